@@ -55,7 +55,7 @@ def soft_blocks(count):
     block = {"type": "fem", "element": "tet4", "density": 1070.0, "damping": {"stiffness": "2 ms"},
              "material": {"model": "corotational", "young_modulus": 3e5, "poisson_ratio": 0.4},
              "mesh": {"shape": "block", "length": "40 mm", "width": "40 mm", "height": "20 mm", "element_size": "4.4 mm"}}  # fmt: skip
-    bodies = {f"block{k}": {**block, "position": [*p, 0.0]} for k, p in enumerate(on_a_grid(count, 0.05))}
+    bodies = {f"block{k}": {**block, "pose": {"position": [*p, 0.0]}} for k, p in enumerate(on_a_grid(count, 0.05))}
     floor = {"surface": {"plane": {"point": [0, 0, -1e-4], "normal": [0, 0, 1]}}, "nodes": {"set": "z_min"}, "friction": 0.5}
     return bodies, {f"floor{k}": {"body": f"block{k}", **floor} for k in range(count)}
 

@@ -16,7 +16,7 @@ EDGE, STEPS = "3 mm", 40
 
 
 def tube(position, rotation, held):
-    return {"type": "fem", "element": "tet4", "density": "1000 kg/m^3", "position": position, "rotation": rotation,
+    return {"type": "fem", "element": "tet4", "density": "1000 kg/m^3", "pose": {"position": position, "rotation": rotation},
             "material": {"model": "corotational", "young_modulus": "300 kPa", "poisson_ratio": 0.4},
             "fixed": [{"box": box} for box in held],
             "mesh": {"shape": "hollow-cylinder", "outer_radius": "15 mm", "inner_radius": "9 mm", "height": "120 mm",
@@ -26,7 +26,7 @@ def tube(position, rotation, held):
 def scene(method, itself):
     low = tube("0 0 0 mm", "0 90 0 deg", ["-1 -20 -20 8 20 20 mm", "112 -20 -20 121 20 20 mm"])
     high = tube("60 60 30.2 mm", "90 0 0 deg", ["40 -61 10 80 -52 50 mm", "40 52 10 80 61 50 mm"])
-    high["base"] = {"z": {"ramp": {"to": "-8 mm", "duration": "0.3 s"}}}
+    high["motion"] = {"z": {"ramp": {"to": "-8 mm", "duration": "0.3 s"}}}
     contacts = {"cross": {"between": ["low", "high"], "friction": 0.3}}
     if itself:
         contacts |= {name: {"between": [name, name], "friction": 0.3} for name in ("low", "high")}

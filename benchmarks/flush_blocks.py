@@ -11,7 +11,7 @@ STEPS = 5
 
 
 def half(edge, height, face):
-    return {"type": "fem", "element": "hex8", "density": "1000 kg/m^3", "position": f"0 0 {height} mm", "fixed": {"set": face},
+    return {"type": "fem", "element": "hex8", "density": "1000 kg/m^3", "pose": {"position": f"0 0 {height} mm"}, "fixed": {"set": face},
             "material": {"model": "neo-hookean", "young_modulus": "100 kPa", "poisson_ratio": 0.3},
             "mesh": {"shape": "block", "length": "20 mm", "width": "20 mm", "height": "10 mm", "element_size": edge}}  # fmt: skip
 
@@ -19,7 +19,7 @@ def half(edge, height, face):
 def measure(edges, friction):
     press = {"z": {"ramp": {"to": "-1 mm", "duration": "0.3 s"}}}
     sim = sinew.load({"sinew": 1, "time_step": "0.1 s", "gravity": "0 0 0 m/s^2",
-                      "bodies": {"low": half(edges[0], 0, "z_min"), "up": {**half(edges[1], 10, "z_max"), "base": press}},
+                      "bodies": {"low": half(edges[0], 0, "z_min"), "up": {**half(edges[1], 10, "z_max"), "motion": press}},
                       "contacts": {"cut": {"between": ["low", "up"], "friction": friction}}}, threads=1)  # fmt: skip
     for step in range(STEPS):
         start = time.process_time()

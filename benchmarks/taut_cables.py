@@ -33,7 +33,7 @@ def random_column(seed):
     return {
         "sinew": 1, "gravity": [0, 0, -9.81], "time_step": 0.02,
         "bodies": {"column": {"type": "fem", "material": material, "density": 1050.0, "fixed": {"set": "z_min"},
-                              "position": [-side / 2, -side / 2, 0],
+                              "pose": {"position": [-side / 2, -side / 2, 0]},
                               "mesh": {"shape": "block", "length": side, "width": side, "height": HEIGHT, "element_size": side / 2}}},
         "masses": {"tip": {"body": "column", "point": [0, 0, HEIGHT], "mass": float(random.uniform(0, 0.02)), "outside": "nearest"}},
         "actuators": cables,

@@ -22,6 +22,7 @@
 #include "sinew/mechanics/capabilities.hpp"
 #include "sinew/model/actuator.hpp"
 #include "sinew/model/model.hpp"
+#include "sinew/scene/controller_kind.hpp"
 #include "sinew/sense/sensor_set.hpp"
 #include "sinew/sense/sensor_source.hpp"
 
@@ -376,12 +377,11 @@ Json signals_json(const std::vector<SignalInfo>& signals) {
 
 Json controllers_json(const scene::Robot& robot) {
   Json list = Json::array();
-  for (const scene::SceneController& controller : robot.controllers) {
+  for (const scene::ControllerDescription& controller : robot.description.controllers) {
     Json effectors = Json::array();
-    for (const control::EffectorTask& task : controller.settings.tasks) {
-      effectors.push_back(robot.model->effectors()[static_cast<std::size_t>(task.effector)].name);
-    }
-    list.push_back({{"name", controller.name}, {"type", "inverse"}, {"effectors", effectors}});
+    for (const scene::TaskDescription& task : controller.tasks) effectors.push_back(task.effector);
+    list.push_back(
+        {{"name", controller.name}, {"type", controller.kind->word}, {"effectors", effectors}});
   }
   return list;
 }

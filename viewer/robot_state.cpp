@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "sinew/control/target_controller.hpp"
+#include "sinew/control/inverse_controller.hpp"
 #include "sinew/fem/of_elements.hpp"
 #include "sinew/mechanics/body.hpp"
 #include "sinew/mechanics/capabilities.hpp"
@@ -51,13 +51,14 @@ RobotState::RobotState(scene::Robot robot, std::shared_ptr<sim::Simulation> simu
                        std::optional<scene::SceneController> first)
     : robot_(std::move(robot)),
       simulation_(std::move(simulation)),
+      own_(first ? control::make_controller(*simulation_, first->settings) : nullptr),
+      controller_(own_.get()),
+      controller_name_(first ? first->name : std::string()),
       observables_(list_observables()),
       description_(describe(robot_, observables_)),
       playback_(*simulation_, observables_),
       frames_(*simulation_, observables_, description_),
-      first_(std::move(first)) {
-  if (first_) attach(first_->name, first_->settings);
-}
+      first_(std::move(first)) {}
 
 RobotState::~RobotState() {
   release();
@@ -163,7 +164,7 @@ void RobotState::detach() {
   controller_name_.clear();
 }
 
-void RobotState::attach(const std::string& name, const control::InverseSettings& settings) {
+void RobotState::attach(const std::string& name, const control::ControllerSettings& settings) {
   detach();
   own_ = control::make_controller(*simulation_, settings);
   controller_ = own_.get();
@@ -188,9 +189,9 @@ void RobotState::set_target(const SetTarget& target) {
     targets_.erase(target.effector);
     for (const scene::SceneController& controller : robot_.controllers) {
       if (controller.name != controller_name_) continue;
-      const auto found =
-          std::ranges::find(controller.settings.tasks, effector, &control::EffectorTask::effector);
-      if (found == controller.settings.tasks.end()) continue;
+      const auto& tasks = controller.settings.targets.tasks;
+      const auto found = std::ranges::find(tasks, effector, &control::EffectorTask::effector);
+      if (found == tasks.end()) continue;
       controller_->set_target(task_of(effector), found->target);
     }
     if (controller_name_ == kOwnController) detach();
@@ -202,9 +203,9 @@ void RobotState::set_target(const SetTarget& target) {
                 "attach one: sinew.InverseController(sim, {...})");
   }
   if (task_of(effector) < 0) {
-    control::InverseSettings settings;
+    control::TargetSettings settings;
     settings.tasks = {{effector, control::Target::fixed(*target.position), {1.0}}};
-    attach(kOwnController, settings);
+    attach(kOwnController, control::settings_for<control::InverseController>(settings, {}));
   } else {
     controller_->set_target(task_of(effector), control::Target::fixed(*target.position));
   }
@@ -248,7 +249,7 @@ std::shared_ptr<const Acting> RobotState::acting() {
   if (acting_) return acting_;
   Acting now{simulation_->inputs(), controller_name_, {}, targets_};
   for (run::BodyInputs& body : now.inputs.bodies) body.tether.reset();
-  if (own_) now.settings = own_->settings();
+  if (own_) now.settings = own_->all_settings();
   return acting_ = std::make_shared<const Acting>(std::move(now));
 }
 

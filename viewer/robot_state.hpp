@@ -98,7 +98,7 @@ class RobotState {
   std::string status_members() const;
 
  private:
-  void attach(const std::string& name, const control::InverseSettings& settings);
+  void attach(const std::string& name, const control::ControllerSettings& settings);
   void detach();
   void stop(const Error& error);
   std::shared_ptr<const Acting> acting();
@@ -107,14 +107,14 @@ class RobotState {
 
   scene::Robot robot_;
   std::shared_ptr<sim::Simulation> simulation_;
+  std::unique_ptr<control::TargetController> own_;
+  control::TargetController* controller_ = nullptr;  ///< own_, or an observed one
+  std::string controller_name_;
   sim::Observables observables_;
   Description description_;
   Playback playback_;
   FrameMaker frames_;
   double real_time_factor_ = 0.0;
-  std::unique_ptr<control::TargetController> own_;
-  control::TargetController* controller_ = nullptr;  ///< own_, or an observed one
-  std::string controller_name_;
   std::optional<bool> followed_before_;  // see follow()
   std::optional<scene::SceneController> first_;
   bool observing_ = false;

@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-#include "sinew/control/inverse_settings.hpp"
+#include "sinew/control/target_controller.hpp"
 #include "sinew/core/types.hpp"
 #include "sinew/run/inputs.hpp"
 #include "sinew/run/state.hpp"
@@ -21,10 +21,10 @@ namespace sinew::viewer {
 
 /// The inputs of a run besides its state. Moments between which these have not changed share one.
 struct Acting {
-  run::Inputs inputs;                                ///< without the mouse spring
-  std::string controller;                            ///< name; empty: none
-  std::optional<control::InverseSettings> settings;  ///< of the controller, including targets
-  std::map<std::string, Vector3> targets;            ///< set by the page
+  run::Inputs inputs;                                   ///< without the mouse spring
+  std::string controller;                               ///< name; empty: none
+  std::optional<control::ControllerSettings> settings;  ///< of the controller, including targets
+  std::map<std::string, Vector3> targets;               ///< set by the page
 };
 
 /// Everything that determines how a run continues from one time.

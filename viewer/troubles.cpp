@@ -55,42 +55,42 @@ void add_limits(const model::ActuatorModel& model, const model::ActuatorState& s
 
 void add_controller(const control::TargetController& controller, const std::string& name,
                     Json& list) {
-  const std::string kind(control::inverse_status_name(controller.status()));
+  const std::string kind(control::controller_status_name(controller.status()));
   switch (controller.status()) {
-    case control::InverseStatus::not_started:
-    case control::InverseStatus::on_target:
-    case control::InverseStatus::moving:
+    case control::ControllerStatus::not_started:
+    case control::ControllerStatus::on_target:
+    case control::ControllerStatus::moving:
       break;
-    case control::InverseStatus::rate_limited:
+    case control::ControllerStatus::rate_limited:
       list.push_back(trouble("info", "rate-limited", name, "on the way; rates are limited"));
       break;
-    case control::InverseStatus::out_of_reach:
+    case control::ControllerStatus::out_of_reach:
       list.push_back(trouble(
           "warning", "out-of-reach", name,
           fmt::format("the target is out of reach by {:.3g} mm", 1e3 * controller.error())));
       break;
-    case control::InverseStatus::local_optimum:
+    case control::ControllerStatus::local_optimum:
       list.push_back(trouble("warning", "local-optimum", name,
                              fmt::format("no small change of efforts comes nearer than {:.3g} mm",
                                          1e3 * controller.error())));
       break;
-    case control::InverseStatus::held_back:
+    case control::ControllerStatus::held_back:
       list.push_back(trouble(
           "warning", "held-back", name,
           fmt::format("the robot rests {:.3g} mm from the target because larger steps fail: it "
                       "would buckle or be crushed",
                       1e3 * controller.error())));
       break;
-    case control::InverseStatus::limits_conflict:
+    case control::ControllerStatus::limits_conflict:
       list.push_back(trouble("error", "limits-conflict", name,
                              "limits contradict each other: " + controller.conflict()));
       break;
-    case control::InverseStatus::at_limits:
+    case control::ControllerStatus::at_limits:
       list.push_back(trouble("warning", "at-limits", name,
                              fmt::format("limits hold the effectors {:.3g} mm off their targets",
                                          1e3 * controller.error())));
       break;
-    case control::InverseStatus::holding:
+    case control::ControllerStatus::holding:
       list.push_back(
           trouble("warning", "holding", name, "commands are held, since " + controller.conflict()));
       break;

@@ -111,7 +111,7 @@ void count(Tally& tally, Session& session) {
   }
   const control::TargetController* controller = session.controller();
   const bool told = controller != nullptr && !run::is_flagged(report.status);
-  ++tally.statuses[std::string(told ? inverse_status_name(controller->status())
+  ++tally.statuses[std::string(told ? controller_status_name(controller->status())
                                     : run::step_status_name(report.status))];
   if (controller == nullptr || session.simulation().time() < tally.judged_from) return;
   ++tally.judged;

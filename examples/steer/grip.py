@@ -83,7 +83,7 @@ def scene(folder):
     }
     for name, body in made["bodies"].items():
         if name.startswith("finger"):
-            body["base"] = {
+            body["motion"] = {
                 "z": smooth(folder / "up.csv", LIFTS, LIFTED, grasp.LIFT),
                 "x": smooth(folder / "aside.csv", LIFTED, SWUNG, ASIDE),
             }

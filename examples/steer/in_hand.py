@@ -35,7 +35,7 @@ def fingertip(side):
     bodies = {
         "pad": {
             "type": "fem", "mesh": {"shape": "block", "length": PAD[0], "width": PAD[1], "height": PAD[2], "element_size": CELL},
-            "position": [min(face, back), -0.5 * PAD[1], -0.5 * PAD[2]], "element": "hex8",
+            "pose": {"position": [min(face, back), -0.5 * PAD[1], -0.5 * PAD[2]]}, "element": "hex8",
             "material": {"model": "neo-hookean", "young_modulus": "150 kPa", "poisson_ratio": 0.45},
             "density": "1070 kg/m^3", "damping": {"stiffness": "5 ms"},
         },

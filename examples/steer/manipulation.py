@@ -92,7 +92,7 @@ def scene(folder):
         about_z = np.array([[np.cos(turn), -np.sin(turn), 0.0], [np.sin(turn), np.cos(turn), 0.0], [0.0, 0.0, 1.0]])
         hexahedra.write(folder / f"finger_{k}.vtk", (nodes + [APART, 0.0, 0.0]) @ about_z.T, cells)
         bodies[f"finger_{k}"] = soft(folder / f"finger_{k}.vtk", "600 kPa") | {
-            "fixed": {"box": [-0.2, -0.2, ABOVE - FIXED - 1e-6, 0.2, 0.2, ABOVE + 1e-6]}, "base": {"z": {"ramp": lift}},
+            "fixed": {"box": [-0.2, -0.2, ABOVE - FIXED - 1e-6, 0.2, 0.2, ABOVE + 1e-6]}, "motion": {"z": {"ramp": lift}},
         }  # fmt: skip
         contacts[f"grip_{k}"] = {"between": [f"finger_{k}", "cup"], "friction": FRICTION}
         actuators |= cables(k, end)

@@ -92,7 +92,8 @@ class Notice(NamedTuple):
         cable ran straight between two points of a body that bent. Simulation.run() warns of the last two, and of bare
         points whose dents took more than a tenth of a cable's pull.
         "unstable-law": a material loses its stability at strains of robots. "strain-range": a library law was not tested
-        at the strains of the run, or is too soft at small strain.
+        at the strains of the run, or is too soft at small strain. "renamed-word": a key of the scene has another name
+        now.
     place : Location
         Location in the scene.
     message : str

@@ -1,8 +1,10 @@
+#include <limits>
 #include <map>
 
 #include <fmt/format.h>
 
 #include "sinew/constraint/contact.hpp"
+#include "sinew/control/inverse_controller.hpp"
 #include "sinew/model/model.hpp"
 #include "sinew/sense/sensor_set.hpp"
 
@@ -15,6 +17,7 @@ namespace sinew::python {
 namespace {
 
 using control::EffectorTask;
+using control::InverseController;
 using control::InverseSettings;
 using control::TargetController;
 
@@ -178,20 +181,23 @@ Controller make(const std::shared_ptr<Session>& session, const py::object& targe
                 const std::string& regularisation, const py::object& epsilon,
                 const py::object& tolerance, const py::object& largest_step,
                 const py::object& contacts, const py::object& priorities, bool certify) {
-  InverseSettings settings;
-  settings.certify = certify;
+  control::TargetSettings settings;
+  InverseSettings own;
+  own.certify = certify;
   settings.tasks = to_tasks(session->model(), targets, weights);
-  settings.contacts = to_contact_tasks(session->model(), contacts);
+  own.contacts = to_contact_tasks(session->model(), contacts);
   set_priorities(session->model(), priorities, settings.tasks);
   settings.actuators = to_actuators(session->model(), actuators);
-  settings.regularisation = to_regularisation(regularisation);
+  own.regularisation = to_regularisation(regularisation);
   const auto read = [](const py::object& value, const char* place, const char* unit, double& to) {
     if (!value.is_none()) to = to_number(value, place, unit);
   };
-  read(epsilon, "InverseController(epsilon)", "no unit", settings.epsilon);
+  read(epsilon, "InverseController(epsilon)", "no unit", own.epsilon);
   read(tolerance, "InverseController(tolerance)", "m", settings.tolerance);
-  read(largest_step, "InverseController(largest_step)", "no unit", settings.largest_step);
-  return {session, session->attach(std::move(settings), {})};
+  read(largest_step, "InverseController(largest_step)", "no unit", own.largest_step);
+  return {session,
+          session->attach(
+              control::settings_for<InverseController>(std::move(settings), std::move(own)), {})};
 }
 
 py::object get_target(const Targets& self, const std::string& name) {
@@ -229,22 +235,23 @@ py::dict errors(const Controller& self) {
 py::dict measured_errors(const Controller& self) {
   const Session::Use use(*self.session);
   py::dict result;
-  if (!law(self).settings().feedback) return result;
   const auto& tasks = law(self).settings().tasks;
   for (std::size_t k = 0; k < tasks.size(); ++k) {
-    result[effector_name(self, tasks[k]).c_str()] = law(self).measured_error(static_cast<int>(k));
+    const int task = static_cast<int>(k);
+    if (law(self).sensor(task) < 0) continue;
+    result[effector_name(self, tasks[k]).c_str()] = law(self).measured_error(task);
   }
   return result;
 }
 
 py::dict sensors(const Controller& self) {
   py::dict result;
-  const auto& settings = law(self).settings();
-  if (!settings.feedback) return result;
-  for (std::size_t k = 0; k < settings.tasks.size(); ++k) {
-    const auto sensor = static_cast<std::size_t>(settings.feedback->sensors[k]);
-    result[effector_name(self, settings.tasks[k]).c_str()] =
-        sense::sensors_of(self.session->model())[sensor].name;
+  const auto& tasks = law(self).settings().tasks;
+  for (std::size_t k = 0; k < tasks.size(); ++k) {
+    const int sensor = law(self).sensor(static_cast<int>(k));
+    if (sensor < 0) continue;
+    result[effector_name(self, tasks[k]).c_str()] =
+        sense::sensors_of(self.session->model())[static_cast<std::size_t>(sensor)].name;
   }
   return result;
 }
@@ -338,7 +345,7 @@ void bind_methods(py::class_<Controller>& type) {
           [](const Controller& self, const py::object& n) {
             require_attached(self);
             self.session->advance(to_count(n, "step(n)"));
-            return std::string(inverse_status_name(law(self).status()));
+            return std::string(controller_status_name(law(self).status()));
           },
           py::arg("n") = 1,
           R"(step($self, n=1)
@@ -380,10 +387,15 @@ auto guarded(Get get) {
   };
 }
 
+// Only an inverse controller has requirements on forces, predictions and certificates.
+const InverseController* as_inverse(const TargetController& law) {
+  return dynamic_cast<const InverseController*>(&law);
+}
+
 void bind_results(py::class_<Controller>& type) {
   type.def_property_readonly(
           "status", guarded([](const TargetController& law) {
-            return std::string(inverse_status_name(law.status()));
+            return std::string(controller_status_name(law.status()));
           }),
           "str: status of the last step: 'not-started'; 'on-target', within the "
           "tolerance and as predicted; 'moving', on the way; 'rate-limited', on "
@@ -416,11 +428,13 @@ void bind_results(py::class_<Controller>& type) {
                              "dict: for a closed loop, the sensor of every effector; else empty.")
       .def_property_readonly("force_errors", guarded([](const TargetController& law) {
                                py::dict errors;
-                               const auto& tasks = law.settings().contacts;
+                               const InverseController* inverse = as_inverse(law);
+                               if (inverse == nullptr) return errors;
+                               const auto& tasks = inverse->own_settings().contacts;
                                for (std::size_t k = 0; k < tasks.size(); ++k) {
                                  const auto& model = law.simulation().model();
                                  errors[py::str(model.contact(tasks[k].contact).name())] =
-                                     law.force_error(static_cast<int>(k));
+                                     inverse->force_error(static_cast<int>(k));
                                }
                                return errors;
                              }),
@@ -428,8 +442,9 @@ void bind_results(py::class_<Controller>& type) {
                              "(N); NaN before the first step.")
       .def_property_readonly(
           "certificate", guarded([](const TargetController& law) -> py::object {
-            const auto& found = law.certificate();
-            if (!found) return py::none();
+            const InverseController* inverse = as_inverse(law);
+            if (inverse == nullptr || !inverse->certificate()) return py::none();
+            const auto& found = inverse->certificate();
             py::dict all;
             all["violation"] = found->violation;
             all["stays"] = found->stays;
@@ -448,8 +463,11 @@ void bind_results(py::class_<Controller>& type) {
           "`best_nearby`, whether no neighbouring piece is better: because of 'S', or because all "
           "`pieces` (2^between) were compared.")
       .def_property_readonly(
-          "predicted_error",
-          guarded([](const TargetController& law) { return law.predicted_error(); }),
+          "predicted_error", guarded([](const TargetController& law) {
+            const InverseController* inverse = as_inverse(law);
+            return inverse == nullptr ? std::numeric_limits<double>::quiet_NaN()
+                                      : inverse->predicted_error();
+          }),
           "float: error predicted by the last linearisation (m or rad), over all effectors; NaN "
           "before a step.")
       .def_property_readonly(
@@ -470,7 +488,7 @@ void bind_results(py::class_<Controller>& type) {
       .def("__repr__", [](const Controller& self) {
         return fmt::format("<sinew.InverseController of {} actuators, {}>",
                            law(self).settings().actuators.size(),
-                           self.attached->attached ? inverse_status_name(law(self).status())
+                           self.attached->attached ? controller_status_name(law(self).status())
                                                    : std::string_view("detached"));
       });
 }

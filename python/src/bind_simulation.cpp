@@ -18,8 +18,7 @@ std::shared_ptr<Session> build(scene::Node tree, const std::vector<std::string>&
                                const fs::path& folder, const std::string& name,
                                const std::optional<int>& threads) {
   const py::gil_scoped_release release;
-  for (const std::string& assignment : overrides) scene::apply_override(tree, assignment);
-  auto description = scene::parse_scene_tree(std::move(tree), folder);
+  auto description = scene::parse_changed_scene(std::move(tree), overrides, folder);
   description.name = name;
   if (threads) description.solver.threads = *threads;
   auto robot = std::make_shared<const LoadedRobot>(

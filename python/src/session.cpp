@@ -90,7 +90,7 @@ std::shared_ptr<Session> Session::clone() const {
   auto other = std::make_shared<Session>(robot_, simulation_.threads());
   if (other->controller_) other->detach(*other->controller_);
   other->simulation_.set_inputs(simulation_.inputs());
-  if (controller_) other->attach(controller_->law->settings(), controller_->name);
+  if (controller_) other->attach(controller_->law->all_settings(), controller_->name);
   other->simulation_.restore(simulation_.state());
   other->steps_ = simulation_.steps();
   return other;
@@ -273,7 +273,7 @@ sim::Linearisation Session::last_linearisation() {
   return sim::last_linearisation(simulation_);
 }
 
-std::shared_ptr<AttachedController> Session::attach(control::InverseSettings settings,
+std::shared_ptr<AttachedController> Session::attach(const control::ControllerSettings& settings,
                                                     std::string name) {
   const Use use(*this);
   if (controller_) {
@@ -285,15 +285,15 @@ std::shared_ptr<AttachedController> Session::attach(control::InverseSettings set
   }
   auto made = std::make_shared<AttachedController>();
   made->name = std::move(name);
-  made->law = control::make_controller(simulation_, std::move(settings));
+  made->law = control::make_controller(simulation_, settings);
   controller_ = made;
   return made;
 }
 
-std::optional<control::InverseSettings> Session::lend_controller() {
+std::optional<control::ControllerSettings> Session::lend_controller() {
   if (!controller_) return std::nullopt;
   controller_->law->detach();
-  return controller_->law->settings();
+  return controller_->law->all_settings();
 }
 
 void Session::take_back(bool same, const std::string& name,

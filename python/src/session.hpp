@@ -148,13 +148,14 @@ class Session {
   /// The attached controller; null if there is none.
   const std::shared_ptr<AttachedController>& controller() const { return controller_; }
   /// Attaches a controller. Throws Error(actuator-owned) if another one is attached.
-  std::shared_ptr<AttachedController> attach(control::InverseSettings settings, std::string name);
+  std::shared_ptr<AttachedController> attach(const control::ControllerSettings& settings,
+                                             std::string name);
   /// Detaches `controller` if it is attached.
   void detach(AttachedController& controller);
 
   /// For code that holds a Use and steps the simulation itself: detaches the controller, which
   /// Python still sees as attached, and returns its settings; none if there is no controller.
-  std::optional<control::InverseSettings> lend_controller();
+  std::optional<control::ControllerSettings> lend_controller();
   /// Takes back the controller after lend_controller().
   /// @param same whether it is the one that was lent. @param name of another one.
   /// @param law the controller that is now attached, or null.

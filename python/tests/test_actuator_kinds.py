@@ -13,7 +13,7 @@ bodies:
     material: {model: neo-hookean, shear_modulus: 40 kPa, poisson_ratio: 0.45}
     density: 1000 kg/m^3
     fixed: {set: bottom}
-  arm: {type: pcc, position: 60 0 0 mm, segments: [{length: 50 mm, mass: 10 g, stiffness: 0.02 N m}]}
+  arm: {type: pcc, pose: {position: 60 0 0 mm}, segments: [{length: 50 mm, mass: 10 g, stiffness: 0.02 N m}]}
   wheel: {type: rigid, shape: {box: 10 10 10 mm}, mass: 10 g, pose: {position: 0 80 0 mm}}
 joints:
   axle: {type: hinge, bodies: [world, wheel], point: 0 80 0 mm, axis: z}

@@ -73,8 +73,8 @@ def test_deformable_bodies_touch_in_zones():
         contact = {"between": ["pad", "block"], "friction": 0.5, **({"aggregate": zone} if zone else {})}
         block = {"type": "fem", "element": "tet4-patch", "material": SILICONE, "density": "1000 kg/m^3",
                  "mesh": {"shape": "block", "length": "23 mm", "width": "21 mm", "height": "12 mm", "element_size": "3 mm"},
-                 "position": "13 15 20.1 mm", "fixed": {"set": "z_max"},
-                 "base": {"z": {"ramp": {"to": "-2.1 mm", "duration": "0.2 s"}},
+                 "pose": {"position": "13 15 20.1 mm"}, "fixed": {"set": "z_max"},
+                 "motion": {"z": {"ramp": {"to": "-2.1 mm", "duration": "0.2 s"}},
                           "x": {"ramp": {"to": "3 mm", "start": "0.22 s", "duration": "0.2 s"}}}}
         return {"sinew": 1, "time_step": "10 ms", "bodies": {"pad": pad("4 mm"), "block": block},
                 "contacts": {"grip": contact}}
@@ -125,9 +125,9 @@ def test_a_grip_lifts_what_friction_can_hold():
     grip = {"friction": 0.6, "aggregate": "8 mm"}
 
     def side(at, normal, base):
-        return {"type": "fem", "material": "dragon-skin-30", "position": at, "fixed": {"set": normal},
+        return {"type": "fem", "material": "dragon-skin-30", "pose": {"position": at}, "fixed": {"set": normal},
                 "mesh": {"shape": "block", "length": "15 mm", "width": "20 mm", "height": "20 mm", "element_size": "4 mm"},
-                "base": {"x": {"ramp": {"to": base, "duration": "0.2 s"}},
+                "motion": {"x": {"ramp": {"to": base, "duration": "0.2 s"}},
                          "z": {"ramp": {"to": "20 mm", "start": "0.25 s", "duration": "0.4 s"}}}}
 
     sim = sinew.load({
@@ -180,7 +180,7 @@ def struck_cylinder(order, at, integrator, mass="2 g", edge="30 mm", **contact):
         "cube": {"type": "fem", "material": {"young_modulus": "100 kPa", "poisson_ratio": 0.3}, "density": "1000 kg/m^3",
                  "mesh": {"shape": "block", "length": "30 mm", "width": "30 mm", "height": "30 mm",
                           "element_size": "15 mm"},
-                 "element": "tet4", "position": at, "initial_velocity": {"linear": "0 1 0 m/s"}}}
+                 "element": "tet4", "pose": {"position": at}, "velocity": {"linear": "0 1 0 m/s"}}}
     return sinew.load({
         "sinew": 1, "time_step": "5 ms", "integrator": integrator, "gravity": "-3 0 -5 m/s^2",
         "bodies": {name: bodies[name] for name in order},

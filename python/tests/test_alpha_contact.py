@@ -17,9 +17,9 @@ RUBBER = {"model": "neo-hookean", "young_modulus": "300 kPa", "poisson_ratio": 0
 @pytest.mark.parametrize("soft", [True, False])
 def test_a_tumbling_block_never_has_more_energy_than_at_its_start(soft, step):
     motion = {"linear": "0.3 0 0 m/s", "angular": "3 2 0 rad/s"}
-    block = ({"type": "fem", "element": "hex8", "material": RUBBER, "density": "1000 kg/m^3", "position": "-20 -20 5 mm",
+    block = ({"type": "fem", "element": "hex8", "material": RUBBER, "density": "1000 kg/m^3", "pose": {"position": "-20 -20 5 mm"},
               "mesh": {"shape": "block", "length": "40 mm", "width": "40 mm", "height": "20 mm", "element_size": "10 mm"},
-              "initial_velocity": motion} if soft else
+              "velocity": motion} if soft else
              {"type": "rigid", "shape": {"box": "40 40 20 mm"}, "mass": "32 g", "pose": {"position": "0 0 15 mm"}, "velocity": motion})
     sim = sinew.load({"sinew": 1, "time_step": step, "integrator": ALPHA, "gravity": "0 0 -9.81 m/s^2", "bodies": {"block": block},
                       "contacts": {"floor": {"body": "block", "surface": {"plane": {}}, "friction": 0.4}}})

@@ -11,7 +11,7 @@ def beam(base=None, element="hex8", **world):
             "mesh": {"shape": "block", "length": 0.06, "width": 0.01, "height": 0.01, "element_size": 0.005},
             "damping": {"stiffness": 0.02}}
     if base is not None:
-        body["base"] = base
+        body["motion"] = base
     return sinew.load({"sinew": 1, "solver": {"ordering": "amd", "method": "newton"}, "bodies": {"beam": body},
                        "effectors": {"tip": {"body": "beam", "point": [0.06, 0.005, 0.005]}}, **world})
 

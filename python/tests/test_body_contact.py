@@ -86,7 +86,7 @@ def test_bodies_that_collide_exchange_momentum(friction):
 
 
 def test_a_soft_block_stands_on_a_cube_that_stands_on_a_table():
-    sim = make({"block": soft_block(position="-10 -10 40.1 mm"), "cube": cube(), "table": TABLE},
+    sim = make({"block": soft_block(pose={"position": "-10 -10 40.1 mm"}), "cube": cube(), "table": TABLE},
                {"top": {"between": ["block", "cube"], "nodes": {"set": "z_min"}, "friction": 0.5},
                 "floor": {"between": ["cube", "table"], "friction": 0.5}})
     sim.run(duration=1.0)
@@ -99,8 +99,8 @@ def test_a_soft_block_stands_on_a_cube_that_stands_on_a_table():
 def grasp(friction, mass, lift="20 mm"):
     """Two soft pads close on a cube that stands on a table, and lift it."""
     ramp = lambda to, start: {"ramp": {"to": to, "start": start, "duration": "0.2 s"}}
-    pad = lambda at, push: soft_block(position=at, fixed={"set": "x_min" if push[0] != "-" else "x_max"},
-                                      base={"x": ramp(push, "0 s"), "z": ramp(lift, "0.2 s")})
+    pad = lambda at, push: soft_block(pose={"position": at}, fixed={"set": "x_min" if push[0] != "-" else "x_max"},
+                                      motion={"x": ramp(push, "0 s"), "z": ramp(lift, "0.2 s")})
     sim = make({"left": pad("-41 -10 10 mm", "3 mm"), "right": pad("21 -10 10 mm", "-3 mm"),
                 "cube": cube(mass=mass), "table": TABLE},
                {"left_pad": {"between": ["left", "cube"], "nodes": {"set": "x_max"}, "friction": friction},

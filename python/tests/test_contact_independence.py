@@ -110,7 +110,7 @@ class Dragged:
         self.orders = {"top": write(folder / "top.vtu", (0.02, 0.02, 0.02), (0.0073, 0.0091, 0.0201), (4, 4, 4), kind, seed)}
         motion = {"z": {"ramp": {"to": -1.5e-3, "duration": 0.1}}, "x": {"ramp": {"to": 1e-3, "start": 0.1, "duration": 0.1}}}
         element = "hex8" if kind == "hexahedron" else "tet4"
-        bodies = {"top": body(folder / "top.vtu", 2e5, element, fixed=held(0.0401), base=motion)}
+        bodies = {"top": body(folder / "top.vtu", 2e5, element, fixed=held(0.0401), motion=motion)}
         contact = {"body": "top", "surface": {"plane": {"point": [0, 0, 0.02]}}, "friction": friction}
         if on == "block":
             self.orders["low"] = write(folder / "low.vtu", (0.04, 0.04, 0.02), (0.0, 0.0, 0.0), (5, 5, 3), kind, None if seed is None else seed + 100)

@@ -162,7 +162,7 @@ def test_a_plane_is_a_body_that_all_others_touch(integrator, tmp_path):
     tilt = np.radians(5.0)
     rises = {"z": {"ramp": {"to": "2 mm", "duration": "50 ms"}}}
     soft = {"type": "fem", "mesh": {"shape": "block", "length": "30 mm", "width": "30 mm", "height": "15 mm", "element_size": "10 mm"},
-            "position": "0 0 0.2 mm", "material": "dragon-skin-30", "element": "hex8"}  # fmt: skip
+            "pose": {"position": "0 0 0.2 mm"}, "material": "dragon-skin-30", "element": "hex8"}  # fmt: skip
     if integrator == "quasi-static":
         soft["fixed"] = {"box": "-1 -1 15 31 31 16 mm"}
     bodies = {"soft": soft}

@@ -14,7 +14,7 @@ def spin_after(time, element, material, stiffness, tension):
         "bodies": {"block": {
             "type": "fem", "element": element, "material": material, "density": "1000 kg/m^3",
             "mesh": {"shape": "block", "length": "60 mm", "width": "20 mm", "height": "20 mm", "element_size": "10 mm"},
-            "damping": {"stiffness": stiffness}, "initial_velocity": {"angular": "0 0 5 rad/s"}}},
+            "damping": {"stiffness": stiffness}, "velocity": {"angular": "0 0 5 rad/s"}}},
         "actuators": {"tendon": {"type": "cable", "body": "block", "pull": "body", "command": {"tension": tension},
                                  "points": ["10 10 10 mm", "50 10 10 mm"]}}})
     sim.run(duration=time)

@@ -44,10 +44,10 @@ def test_solved_steps_that_gain_energy_are_flagged(element, radius):
     """A soft bar that spins freely, with 15 steps a turn: generalized-alpha at high radii puts energy in, although each step is solved."""
     sim = sinew.load({"sinew": 1, "gravity": [0, 0, 0], "time_step": 0.007,
                       "integrator": {"type": "generalized-alpha", "spectral_radius": radius},
-                      "bodies": {"b": {"type": "fem", "element": element, "density": 1000.0, "position": [-0.05, -0.01, -0.01],
+                      "bodies": {"b": {"type": "fem", "element": element, "density": 1000.0, "pose": {"position": [-0.05, -0.01, -0.01]},
                                        "mesh": {"shape": "block", "length": 0.1, "width": 0.02, "height": 0.02, "element_size": 0.02},
                                        "material": {"model": "neo-hookean", "young_modulus": 5e5, "poisson_ratio": 0.3},
-                                       "initial_velocity": {"angular": [0, 0, 60]}}}})
+                                       "velocity": {"angular": [0, 0, 60]}}}})
     body = sim.body("b")
     start, above = body.kinetic_energy, 0
     for _ in range(200):

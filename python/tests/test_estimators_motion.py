@@ -123,7 +123,7 @@ def test_slack_cables_count_on_the_side_on_which_they_pull():
 def pendulum(force):
     """A hanging soft finger that is released from the side and pushed while it swings."""
     tree = beam(gravity="0 0 -9.81 m/s^2", solver={})
-    tree["bodies"]["beam"] |= {"initial_velocity": {"linear": "0 0.3 0 m/s"}}
+    tree["bodies"]["beam"] |= {"velocity": {"linear": "0 0.3 0 m/s"}}
     tree["loads"]["hand"] |= {"force": force, "factor": {"steps": [["0 s", 0], ["0.1 s", 1]]}}
     for name, noise in (("tip", "0.1 mm"), ("middle", "0.1 mm")):
         tree["sensors"][name]["noise"] = noise
@@ -159,7 +159,7 @@ def flight(force, seed):
         "bodies": {"cube": {"type": "fem", "mesh": {"shape": "block", "length": "20 mm", "width": "20 mm", "height": "20 mm",
                                                     "element_size": "20 mm"}, "element": "tet4",
                             "material": {"model": "corotational", "young_modulus": "300 kPa", "poisson_ratio": 0.3}, "mass": "20 g",
-                            "initial_velocity": {"linear": "0.5 0 2 m/s", "angular": "2 1 3 rad/s"}}},
+                            "velocity": {"linear": "0.5 0 2 m/s", "angular": "2 1 3 rad/s"}}},
         "loads": {"wind": {"type": "force", "body": "cube", "point": "20 15 10 mm", "force": list(force)}},
         "sensors": {"mark": {"type": "marker", "body": "cube", "point": "20 0 0 mm", "noise": "0.5 mm", "seed": seed},
                     "turn": {"type": "gyroscope", "body": "cube", "at": ["10 10 10 mm", "20 10 10 mm", "10 20 10 mm"],

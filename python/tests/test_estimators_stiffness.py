@@ -213,7 +213,7 @@ def test_what_only_the_ratio_of_force_and_stiffness_tells_is_named():
 def test_a_cable_that_ties_two_bodies_tells_a_stiffness():
     """A cable of given length bends both beams. Without weight, the shape of the beam with the known stiffness tells the tension."""
     tree = beam(gravity="0 0 0 m/s^2")
-    tree["bodies"]["other"] = {**tree["bodies"]["beam"], "position": "0 50 0 mm"}
+    tree["bodies"]["other"] = {**tree["bodies"]["beam"], "pose": {"position": "0 50 0 mm"}}
     tree["actuators"] = {"tie": {"type": "cable", "body": "beam", "pull": "body", "command": {"displacement": "2 mm"},
                                  "points": ["55 8 5 mm", {"body": "other", "point": "55 52 5 mm"}]}}
     tree["sensors"]["far"] = {"type": "marker", "body": "other", "point": "60 60 10 mm", "noise": "0.1 mm"}
@@ -236,7 +236,7 @@ def rigid(tree):
 
 
 def elsewhere(tree):
-    tree["bodies"]["other"] = {**tree["bodies"]["beam"], "position": "0 50 0 mm"}
+    tree["bodies"]["other"] = {**tree["bodies"]["beam"], "pose": {"position": "0 50 0 mm"}}
     tree["sensors"]["far"] = {"type": "marker", "body": "other", "point": "60 60 10 mm", "noise": "0.1 mm"}
     tree["estimators"]["watch"]["sensors"].append("far")
 

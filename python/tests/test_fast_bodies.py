@@ -51,10 +51,10 @@ def thrown(name, speed, random):
 
 
 def soft(speed, random):
-    return {"type": "fem", "element": "tet4", "density": 1000.0, "position": [-0.01, -0.01, random.uniform(0.002, 0.05)],
+    return {"type": "fem", "element": "tet4", "density": 1000.0, "pose": {"position": [-0.01, -0.01, random.uniform(0.002, 0.05)]},
             "material": {"model": "neo-hookean", "young_modulus": 1e6, "poisson_ratio": 0.4},
             "mesh": {"shape": "block", "length": 0.02, "width": 0.02, "height": 0.02, "element_size": 0.005},
-            "initial_velocity": {"linear": [0.1 * speed, 0, -speed]}}
+            "velocity": {"linear": [0.1 * speed, 0, -speed]}}
 
 
 def places(sim, name):

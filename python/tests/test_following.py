@@ -31,7 +31,7 @@ def beam(material, element, quantity=None, amplitude=0.0, **more):
     return {
         "sinew": 1, "time_step": 0.01, "gravity": [0, 0, -9.81],
         "bodies": {"beam": {"type": "fem", "density": 1070.0, "material": material, "element": element, "fixed": {"set": "x_min"},
-                            "position": [0, -0.01, -0.01],
+                            "pose": {"position": [0, -0.01, -0.01]},
                             "mesh": {"shape": "block", "length": 0.1, "width": 0.02, "height": 0.02, "element_size": 0.01}}},
         "actuators": cables, "effectors": {"tip": {"body": "beam", "point": [0.1, 0, 0]}}, **more}  # fmt: skip
 
@@ -48,7 +48,7 @@ def dragged():
     return {
         "sinew": 1, "time_step": 0.01, "gravity": [0, 0, 0],
         "bodies": {"block": {"type": "fem", "density": 1000.0, "material": RUBBER, "element": "hex8", "fixed": {"set": "z_max"},
-                             "base": {"z": sine(-5e-4, 0.0, -1.2e-3), "x": sine(4e-3)},
+                             "motion": {"z": sine(-5e-4, 0.0, -1.2e-3), "x": sine(4e-3)},
                              "mesh": {"shape": "block", "length": 0.04, "width": 0.02, "height": 0.02, "element_size": 0.007}}},
         "contacts": {"floor": {"body": "block", "surface": {"plane": {"point": [0, 0, 0], "normal": [0, 0, 1]}},
                                "nodes": {"set": "z_min"}, "friction": 0.5}}}  # fmt: skip
@@ -69,7 +69,7 @@ def linkage():
     scene = beam(COROTATIONAL, "tet4")
     scene["actuators"] = {"turn": {"type": "motor", "joint": "hinge", "command": {"angle": sine(0.6)}}}
     scene["bodies"]["beam"].pop("fixed")
-    scene["bodies"]["beam"]["position"] = [0.1, -0.01, -0.01]
+    scene["bodies"]["beam"]["pose"] = {"position": [0.1, -0.01, -0.01]}
     scene["bodies"]["bar"] = {"type": "rigid", "shape": {"box": [0.1, 0.02, 0.02]}, "mass": 0.05, "pose": {"position": [0.05, 0, 0]}}
     scene["joints"] = {"hinge": {"type": "hinge", "bodies": ["world", "bar"], "point": [0, 0, 0], "axis": "y"},
                        "glue": {"type": "weld", "bodies": ["bar", "beam"], "nodes": {"set": "x_min"}}}  # fmt: skip
@@ -129,7 +129,7 @@ def distances(scene, **settings):
 def slender():
     scene = beam(RUBBER, "tet10", "displacement", 0.003)
     scene["bodies"]["beam"]["mesh"].update(width=0.012, height=0.012, element_size=0.006)
-    scene["bodies"]["beam"]["position"] = [0, -0.006, -0.006]
+    scene["bodies"]["beam"]["pose"] = {"position": [0, -0.006, -0.006]}
     for cable in scene["actuators"].values():
         cable["points"] = [[x, 0.6 * y, 0.6 * z] for x, y, z in cable["points"]]
     return scene

@@ -17,7 +17,7 @@ SOFT = {"type": "fem", "density": 1000.0, "damping": {"stiffness": "2 ms"},
 def block(size, origin, element_size, **more):
     """Sizes in mm."""
     length, width, height = (1e-3 * x for x in size)
-    return {**SOFT, "position": [1e-3 * x for x in origin], **more,
+    return {**SOFT, "pose": {"position": [1e-3 * x for x in origin]}, **more,
             "mesh": {"shape": "block", "length": length, "width": width, "height": height, "element_size": 1e-3 * element_size}}
 
 
@@ -53,7 +53,7 @@ def triangles_of(cells):
 @pytest.mark.parametrize("integrator", ["backward-euler", "bdf2", "generalized-alpha"])
 @pytest.mark.parametrize("speed", [0.0, 3.0])
 def test_a_block_that_falls_on_a_block_says_how_far_it_is(integrator, speed):
-    sim = make({"low": base(), "top": block((20, 20, 20), (7, 9, 57), 10, initial_velocity={"linear": [0, 0, -speed]})},
+    sim = make({"low": base(), "top": block((20, 20, 20), (7, 9, 57), 10, velocity={"linear": [0, 0, -speed]})},
                {"floor": {"between": ["top", "low"]}}, integrator=integrator)
     floor, reach, seen = sim.contact("floor"), 0.0, set()
     for _ in range(40):

@@ -40,7 +40,7 @@ def hand():
         "bodies": {
             "palm": {"type": "rigid", "shape": {"box": "30 30 10 mm"}, "mass": "50 g"},
             "finger": {"type": "fem", "element": "tet4", "mesh": {"shape": "block", "length": "15 mm", "width": "15 mm", "height": "60 mm",
-                                               "element_size": "7.5 mm"}, "position": "-7.5 -7.5 5 mm",
+                                               "element_size": "7.5 mm"}, "pose": {"position": "-7.5 -7.5 5 mm"},
                        "material": {"model": "neo-hookean", "young_modulus": "1 MPa", "poisson_ratio": 0.4}},
         },
         "joints": {"wrist": {"type": "hinge", "bodies": ["world", "palm"], "point": "0 0 0 mm", "axis": "y"},
@@ -129,7 +129,7 @@ def column(side, **more):
         "sinew": 1, "gravity": "0 0 -9.81 m/s^2",
         "bodies": {
             "column": {"type": "fem", "material": "ecoflex-00-30", "density": 1050.0, "fixed": {"set": "z_min"},
-                       "position": [-side / 2, -side / 2, 0],
+                       "pose": {"position": [-side / 2, -side / 2, 0]},
                        "mesh": {"shape": "block", "length": side, "width": side, "height": 0.1, "element_size": side / 2}},
             "block": {"type": "rigid", "shape": {"box": [side, side, side]}, "mass": 0.02, "pose": {"position": [0, 0, 0.1 + side / 2]}}},
         "joints": {"top": {"type": "weld", "bodies": ["column", "block"], "points": [[0, 0, 0.1], [side / 4, 0, 0.1], [0, side / 4, 0.1]],
@@ -168,7 +168,7 @@ def drooping(height, commands):
     return {
         "sinew": 1, "gravity": "0 0 -9.81 m/s^2", "time_step": "20 ms",
         "bodies": {"column": {"type": "fem", "material": "ecoflex-00-30", "density": 1050.0, "fixed": {"set": "z_min"},
-                              "position": [-side / 2, -side / 2, 0],
+                              "pose": {"position": [-side / 2, -side / 2, 0]},
                               "mesh": {"shape": "block", "length": side, "width": side, "height": height, "element_size": side / 2}}},
         "masses": {"tip": {"body": "column", "point": [0, 0, height], "mass": 0.005, "outside": "nearest"}},
         "actuators": cables, "effectors": {"tip": {"body": "column", "point": [0, 0, height], "outside": "nearest"}},

@@ -18,7 +18,7 @@ def block(**keys):
 
 def scene(**keys):
     return {"sinew": 1, "gravity": [0, 0, -9.81],
-            "bodies": {"a": block(fixed={"set": "x_min"}), "b": block(position=[0.04, 0, 0])},
+            "bodies": {"a": block(fixed={"set": "x_min"}), "b": block(pose={"position": [0.04, 0, 0]})},
             "joints": {"seam": {"type": "weld", "bodies": ["b", "a"]}}, **keys}
 
 
@@ -44,7 +44,7 @@ def test_a_chain_of_welds_is_one_body(keys):
     whole["bodies"] = {"a": block(fixed={"set": "x_min"})}
     whole["bodies"]["a"]["mesh"]["length"] = 0.16
     chain = scene(**keys)
-    chain["bodies"] |= {"c": block(position=[0.08, 0, 0]), "d": block(position=[0.12, 0, 0])}
+    chain["bodies"] |= {"c": block(pose={"position": [0.08, 0, 0]}), "d": block(pose={"position": [0.12, 0, 0]})}
     chain["joints"] |= {"two": {"type": "weld", "bodies": ["c", "b"]},
                         "three": {"type": "weld", "bodies": ["d", "c"]},
                         "again": {"type": "weld", "bodies": ["c", "b"]}}  # shares the load
@@ -66,7 +66,7 @@ def test_rows_of_joints_are_taken_out_of_the_compliance():
 
 
 def test_a_body_is_turned_about_its_origin_and_placed():
-    turned = block(position=[0, 0, 0.1], rotation=[0, 0, np.pi / 2], fixed={"set": "x_min"})
+    turned = block(pose={"position": [0, 0, 0.1], "rotation": [0, 0, np.pi / 2]}, fixed={"set": "x_min"})
     sim = sinew.load({"sinew": 1, "bodies": {"a": turned}})
     nodes = np.array(sim.body("a").rest_positions)
     assert nodes.min(axis=0) == pytest.approx([-0.02, 0.0, 0.1], abs=1e-12)
@@ -106,7 +106,7 @@ def test_what_is_not_held_is_named():
     with pytest.raises(sinew.Error, match="cannot be welded to itself"):
         sinew.load(scene(joints={"seam": {"type": "weld", "bodies": ["b", "b"]}}))
     apart = scene()
-    apart["bodies"]["b"]["position"] = [0.05, 0, 0]
+    apart["bodies"]["b"]["pose"] = {"position": [0.05, 0, 0]}
     with pytest.raises(sinew.Error, match="no node of 'b' lies in or on 'a'"):
         sinew.load(apart)
 

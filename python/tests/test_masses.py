@@ -35,7 +35,7 @@ def test_a_mass_sags_as_its_weight():
 
 def test_a_throw():
     sim = hung({"nose": {"body": "beam", "point": "100 10 10 mm", "mass": "40 g"}}, fixed=False, time_step="1 ms",
-               integrator="bdf2", body={"initial_velocity": {"linear": "1 0 2 m/s", "angular": "0 3 0 rad/s"}})
+               integrator="bdf2", body={"velocity": {"linear": "1 0 2 m/s", "angular": "0 3 0 rad/s"}})
     start = sim.state_hash
     nose = sim.mass("nose")
     # Centre of mass: 40 g of the beam at 50 mm and 40 g of the nose at 100 mm give 75 mm.

@@ -67,7 +67,7 @@ def test_a_part_comes_to_rest_in_a_cup_and_its_hull_does_not(tmp_path):
 
 def test_a_soft_block_falls_into_a_cup(tmp_path):
     sim = make({"cup": part(cup(tmp_path), fixed=True),
-                "soft": {**SOFT, "mesh": block(20, 20, 20, 5), "position": "-8 -10 -10 mm"}})
+                "soft": {**SOFT, "mesh": block(20, 20, 20, 5), "pose": {"position": "-8 -10 -10 mm"}}})
     sim.run(duration=0.4)
     nodes = sim.body("soft").positions
     assert nodes[:, 2].min() == pytest.approx(-0.015, abs=1e-6)
@@ -82,7 +82,7 @@ SHAPES = [{"sphere": {"radius": "3 mm"}}, {"capsule": {"radius": "2 mm", "length
 def test_nothing_falls_between_the_nodes_of_a_coarse_body(tmp_path, shape):
     small = {"type": "rigid", "density": "2000 kg/m^3", "pose": {"position": "5 5 8 mm", "rotation": "0.3 0.2 0 rad"}}
     small |= {"shape": shape} if shape else {"mesh": {"file": box(tmp_path, (6, 6, 6)), "unit": "mm"}}
-    pad = {**SOFT, "mesh": block(60, 60, 20, 10), "position": "-30 -30 -20 mm", "fixed": {"set": "z_min"}}
+    pad = {**SOFT, "mesh": block(60, 60, 20, 10), "pose": {"position": "-30 -30 -20 mm"}, "fixed": {"set": "z_min"}}
     sim = make({"pad": pad, "part": small})
     sim.run(duration=0.15)
     assert sim.body("part").position[2] > 0.0015
@@ -91,7 +91,7 @@ def test_nothing_falls_between_the_nodes_of_a_coarse_body(tmp_path, shape):
 
 
 def test_a_corner_dents_as_the_same_body_of_a_shape(tmp_path):
-    pad = {**SOFT, "mesh": block(60, 60, 20, 15), "position": "-30 -30 -20 mm", "fixed": {"set": "z_min"}}
+    pad = {**SOFT, "mesh": block(60, 60, 20, 15), "pose": {"position": "-30 -30 -20 mm"}, "fixed": {"set": "z_min"}}
     pose = {"position": "3.7 2.3 38 mm", "rotation": "0.6 0.9 0 rad"}
     ends = []
     for small in (part(box(tmp_path, (60, 40, 20)), pose=pose),
@@ -141,7 +141,7 @@ def test_states_and_clones_go_on_bit_for_bit(tmp_path):
     def load(threads=1):
         return make({"cup": part(cup(tmp_path), fixed=True),
                      "part": part(box(tmp_path, (20, 16, 12)), pose={"position": "2 1 5 mm", "rotation": "0.3 0.2 0.4 rad"}),
-                     "soft": {**SOFT, "mesh": block(12, 12, 8, 4), "position": "-20 -18 -14 mm"}},
+                     "soft": {**SOFT, "mesh": block(12, 12, 8, 4), "pose": {"position": "-20 -18 -14 mm"}}},
                     solver={"threads": threads})
 
     one, other = load(), load(2)
@@ -160,7 +160,7 @@ def test_states_and_clones_go_on_bit_for_bit(tmp_path):
 
 
 def test_points_do_not_touch_the_surface_of_a_mesh(tmp_path):
-    bodies = {"cup": part(cup(tmp_path), fixed=True), "soft": {**SOFT, "mesh": block(10, 10, 10, 5), "position": "0 0 0 mm"}}
+    bodies = {"cup": part(cup(tmp_path), fixed=True), "soft": {**SOFT, "mesh": block(10, 10, 10, 5), "pose": {"position": "0 0 0 mm"}}}
     with pytest.raises(sinew.Error, match="whole of their surfaces|use: convex"):
         make(bodies, contacts={"touch": {"between": ["soft", "cup"], "nodes": {"set": "z_min"}}})
 
@@ -186,8 +186,8 @@ def test_a_law_with_more_points_than_coordinates_is_solved(first):
         "beam": {"type": "fem", "mesh": {"shape": "block", "length": "60 mm", "width": "20 mm", "height": "10 mm", "element_size": "10 mm"},
                  "material": rubber, "density": 1000.0, "mass_matrix": "consistent", "fixed": {"set": "x_min"}},
         "pillow": {"type": "fem", "mesh": {"shape": "block", "length": "30 mm", "width": "30 mm", "height": "30 mm", "element_size": "15 mm"},
-                   "position": "45 -5 -32.2387 mm", "density": 1000.0, "material": {"young_modulus": "100 kPa", "poisson_ratio": 0.3},
-                   "initial_velocity": {"linear": "0 0 1 m/s"}},
+                   "pose": {"position": "45 -5 -32.2387 mm"}, "density": 1000.0, "material": {"young_modulus": "100 kPa", "poisson_ratio": 0.3},
+                   "velocity": {"linear": "0 0 1 m/s"}},
     }  # fmt: skip
     sim = sinew.load({
         "sinew": 1, "time_step": "5 ms", "integrator": "backward-euler",

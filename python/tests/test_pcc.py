@@ -155,7 +155,7 @@ def test_a_cable_bends_an_arm():
 @pytest.mark.parametrize("change, kind, text", [
     (("bodies", "arm", "segments", 1, "mass", -0.1), "out-of-range", "mass"),
     (("bodies", "arm", "segments", 0, "stiffness", "3 N"), "wrong-dimension", "stiffness"),
-    (("bodies", "arm", "direction", [1, 0, 0]), None, ""),
+    (("bodies", "arm", "pose", {"direction": [1, 0, 0]}), None, ""),
     (("actuators", "bend_0", "segment", 7), "index-out-of-range", "no segment 7"),
     (("actuators", "bend_0", "towards", "across"), "unknown-choice", "planar"),
     (("effectors", "tip", "point", [0.1, 0, -0.3]), "point-outside-mesh", "outside arm"),
@@ -170,7 +170,7 @@ def test_bad_scenes(change, kind, text):
         at = at[part]
     at[key] = value
     if kind is None:
-        scene["bodies"]["arm"]["side"] = [2, 0, 0]
+        scene["bodies"]["arm"]["pose"] = {"direction": [1, 0, 0], "side": [2, 0, 0]}
         kind = "out-of-range"
         text = "side"
     with pytest.raises(sinew.Error) as caught:

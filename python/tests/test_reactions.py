@@ -41,7 +41,7 @@ def test_with_contact_on_the_fixed_nodes():
         "sinew": 1, "gravity": "0 0 -9.81 m/s^2",
         "bodies": {
             "lower": block(fixed=[{"set": "z_min"}, {"set": "x_min"}]),
-            "upper": block(fixed={"set": "x_max"}, position="0 0 20.01 mm"),
+            "upper": block(fixed={"set": "x_max"}, pose={"position": "0 0 20.01 mm"}),
         },
         "contacts": {"touch": {"between": ["upper", "lower"]}},
     })

@@ -17,7 +17,7 @@ ROBOT = {
                  "material": {"model": "neo-hookean", "young_modulus": 2e5, "poisson_ratio": 0.4}},
         "box": {"type": "rigid", "shape": BOX, "mass": 0.02, "pose": {"position": [0.05, 0.01, 0.0305]}},
         "bar": {"type": "rigid", "shape": {"box": [0.01, 0.01, 0.1]}, "mass": 0.1, "pose": {"position": [0.2, 0, -0.05]}},
-        "arm": {"type": "pcc", "position": [0.3, 0, 0], "segments": [{"length": 0.03, "mass": 0.01, "stiffness": 0.02, "damping": 2e-4}]}},
+        "arm": {"type": "pcc", "pose": {"position": [0.3, 0, 0]}, "segments": [{"length": 0.03, "mass": 0.01, "stiffness": 0.02, "damping": 2e-4}]}},
     "actuators": {"up": {"type": "cable", "body": "beam", "points": [[0, 0.01, 0.016], [0.03, 0.01, 0.016], [0.058, 0.01, 0.016]],
                          "friction": 0.1, "command": {"displacement": 1e-3}},
                   "motor": {"type": "motor", "joint": "hinge", "command": {"angle": 0.1}},

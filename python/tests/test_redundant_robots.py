@@ -258,7 +258,7 @@ def resting_link(command):
             "link": {"type": "rigid", "shape": {"capsule": {"radius": "8 mm", "length": "44 mm"}}, "density": 1000.0,
                      "pose": {"position": "78 10 9 mm", "rotation": {"axis": "y", "angle": "90 deg"}}},
             "pad": {"type": "fem", "mesh": {"shape": "block", "length": "30 mm", "width": "30 mm", "height": "30 mm", "element_size": "15 mm"},
-                    "position": "45 -5 -31.9 mm", "density": 1000.0, "fixed": {"set": "z_min"},
+                    "pose": {"position": "45 -5 -31.9 mm"}, "density": 1000.0, "fixed": {"set": "z_min"},
                     "material": {"young_modulus": "100 kPa", "poisson_ratio": 0.3}},
         },
         "joints": {"bond": {"type": "weld", "bodies": ["finger", "bracket"], "points": ["45 10 9 mm", "51 13 9 mm", "48 7 8.5 mm"], "outside": "nearest"},

@@ -250,7 +250,7 @@ def test_a_convex_body_on_the_floor_is_as_a_box(tmp_path, friction, pose, veloci
 
 def test_a_soft_block_falls_on_a_convex_body_as_on_a_box(tmp_path):
     soft = {"type": "fem", "mesh": {"shape": "block", "length": "20 mm", "width": "20 mm", "height": "20 mm",
-                                    "element_size": "10 mm"}, "element": "hex8", "position": "-5 -10 12 mm",
+                                    "element_size": "10 mm"}, "element": "hex8", "pose": {"position": "-5 -10 12 mm"},
             "material": {"model": "neo-hookean", "young_modulus": "100 kPa", "poisson_ratio": 0.4},
             "density": "1000 kg/m^3"}
     ends = []
@@ -272,7 +272,7 @@ def test_a_hull_spans_what_the_surface_leaves_out(tmp_path):
     other, _ = solids.box(np.array([20, 40, 20]), (40, 0, 0))
     two = solids.write_stl(tmp_path / "two.stl", np.vstack([nodes, other]), np.vstack([triangles, triangles + 8]))
     soft = {"type": "fem", "mesh": {"shape": "block", "length": "20 mm", "width": "20 mm", "height": "20 mm",
-                                    "element_size": "20 mm"}, "element": "hex8", "position": "-10 -10 11 mm",
+                                    "element_size": "20 mm"}, "element": "hex8", "pose": {"position": "-10 -10 11 mm"},
             "material": {"model": "neo-hookean", "young_modulus": "100 kPa", "poisson_ratio": 0.4},
             "density": "1000 kg/m^3"}
     sim = make({"part": {**hull(two), "fixed": True}, "soft": soft}, gravity="0 0 -9.81 m/s^2",

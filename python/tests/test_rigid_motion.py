@@ -72,7 +72,7 @@ def test_a_moved_tool_indents_a_pad_as_a_moved_pad_does(tool):
                "material": {"young_modulus": "100 kPa", "poisson_ratio": 0.3}, "density": 1000.0, "fixed": {"set": "z_min"}}  # fmt: skip
         press = {"type": "rigid", "shape": tool, "pose": {"position": "20 20 15.01 mm"}}
         way = {"ramp": {"to": "1 mm" if which == "pad" else "-1 mm", "duration": "50 ms"}}
-        pad.update({"base": {"z": way}} if which == "pad" else {})
+        pad.update({"motion": {"z": way}} if which == "pad" else {})
         press.update({"fixed": True} if which == "pad" else {"motion": {"z": way}})
         sim = sinew.load({"sinew": 1, "time_step": "10 ms", "bodies": {"pad": pad, "press": press}, "contacts": {"c": {"between": ["pad", "press"]}}})
         sim.step(6)

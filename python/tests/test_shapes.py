@@ -73,7 +73,7 @@ def test_a_mesh_is_scaled_mirrored_turned_and_moved(file):
     own = sinew.mesh.read(file)
     twice = sinew.load(scene(b=body({"file": file, "scale": 2}))).body("b")
     assert np.array_equal(twice.rest_positions[: len(own.nodes)], 2.0 * own.nodes)
-    turned = body({"file": file, "scale": [1, 1, -0.5]}, rotation="0 0 90 deg", position="10 20 30 mm")
+    turned = body({"file": file, "scale": [1, 1, -0.5]}, pose={"position": "10 20 30 mm", "rotation": "0 0 90 deg"})
     turned = sinew.load(scene(b=turned)).body("b")
     x, y, z = own.nodes.T
     assert turned.rest_positions[: len(own.nodes)] == pytest.approx(np.c_[0.01 - y, 0.02 + x, 0.03 - 0.5 * z], abs=1e-15)
@@ -108,7 +108,7 @@ def test_a_chamber_in_a_file_goes_with_its_body(tmp_path):
         sim.solve_static()
         return sim.body("b")
 
-    there = inflated("m", rotation="0 90 0 deg", position="1 2 3 m")
+    there = inflated("m", pose={"position": "1 2 3 m", "rotation": "0 90 0 deg"})
     here = inflated("m")
     moved = here.positions - here.rest_positions
     # The mean stress of a body is the sum of x times force, here pressure times the volume that the surface encloses (Betti); the mean

@@ -10,12 +10,12 @@ import sinew
 GRAVITY = 9.81
 
 
-def block(size, origin, element_size, **more):
+def block(size, origin, element_size, rotation="0 0 0 deg", **more):
     length, width, height = (1e-3 * x for x in size)
     return {"type": "fem", "density": 1000.0, "damping": {"stiffness": "1 ms"},
             "material": {"young_modulus": "200 kPa", "poisson_ratio": 0.3},
             "mesh": {"shape": "block", "length": length, "width": width, "height": height, "element_size": 1e-3 * element_size},
-            "position": [1e-3 * x for x in origin], **more}
+            "pose": {"position": [1e-3 * x for x in origin], "rotation": rotation}, **more}
 
 
 def make(bodies, contacts, step="1 ms", gravity="0 0 -9.81 m/s^2", integrator="backward-euler", threads=1, **more):
@@ -111,7 +111,7 @@ def test_edges_that_cross_hold_each_other():
 
 @pytest.mark.parametrize("integrator", ["backward-euler", "bdf2"])
 def test_a_collision_keeps_momentum_and_gains_no_energy(integrator):
-    one = block((20, 20, 20), (0, 0, 0), 5, initial_velocity={"linear": "0.5 0 0 m/s"})
+    one = block((20, 20, 20), (0, 0, 0), 5, velocity={"linear": "0.5 0 0 m/s"})
     other = block((20, 20, 20), (20.5, 3, 4), 5)
     sim = make({"one": one, "other": other}, {"hit": {"between": ["one", "other"], "friction": 0.3}}, step="0.5 ms",
                gravity="0 0 0 m/s^2", integrator=integrator)
@@ -130,7 +130,7 @@ def test_a_collision_keeps_momentum_and_gains_no_energy(integrator):
 
 def test_statics_find_what_time_steps_find():
     top = block((20, 20, 20), (7, 9, 20.5), 4, fixed=[{"set": "z_max"}],
-                base={"z": {"ramp": {"to": "-2.5 mm", "duration": "50 ms"}}})
+                motion={"z": {"ramp": {"to": "-2.5 mm", "duration": "50 ms"}}})
     sim = make({"low": base(), "top": top}, {"press": {"between": ["low", "top"], "friction": 0.5}}, step="10 ms",
                integrator="quasi-static", gravity="0 0 0 m/s^2")
     sim.run(duration=0.08)
@@ -222,12 +222,12 @@ def test_a_part_of_a_surface_is_refused():
 def halves(edges, poisson_ratio):
     """A block cut into two halves that lie on each other; the upper one moves down by 1 mm in 0.3 s."""
     def half(edge, height, face):
-        return {"type": "fem", "element": "hex8", "density": "1000 kg/m^3", "position": f"0 0 {height} mm", "fixed": {"set": face},
+        return {"type": "fem", "element": "hex8", "density": "1000 kg/m^3", "pose": {"position": f"0 0 {height} mm"}, "fixed": {"set": face},
                 "material": {"model": "neo-hookean", "young_modulus": "100 kPa", "poisson_ratio": poisson_ratio},
                 "mesh": {"shape": "block", "length": "20 mm", "width": "20 mm", "height": "10 mm", "element_size": edge}}
 
     return {"low": half(edges[0], 0, "z_min"),
-            "up": {**half(edges[1], 10, "z_max"), "base": {"z": {"ramp": {"to": "-1 mm", "duration": "0.3 s"}}}}}
+            "up": {**half(edges[1], 10, "z_max"), "motion": {"z": {"ramp": {"to": "-1 mm", "duration": "0.3 s"}}}}}
 
 
 @pytest.mark.parametrize("edges", [("5 mm", "5 mm"), ("5 mm", "4 mm")])
@@ -254,12 +254,12 @@ def test_flush_corners_hold_each_other_while_bodies_slide_a_little(element, step
     Regression: with four steps and linear tetrahedra, corners passed each other by 1.1 mm, because faces tilted by 1e-4.
     """
     def half(height, face):
-        return {"type": "fem", "element": element, "density": 1000.0, "position": [0, 0, height], "fixed": {"set": face},
+        return {"type": "fem", "element": element, "density": 1000.0, "pose": {"position": [0, 0, height]}, "fixed": {"set": face},
                 "material": {"model": "saint-venant-kirchhoff", "young_modulus": 100e3, "poisson_ratio": 0.0},
                 "mesh": {"shape": "block", "length": 0.04, "width": 0.04, "height": 0.02, "element_size": 0.01}}
 
     sim = sinew.load({"sinew": 1, "time_step": 1.0 / steps, "gravity": [0, 0, 0], "solver": {"tolerance": 1e-10},
-                      "bodies": {"low": half(0.0, "z_min"), "up": {**half(0.02, "z_max"), "base": {"z": {"ramp": {"to": -4e-3, "duration": 1.0}}}}},
+                      "bodies": {"low": half(0.0, "z_min"), "up": {**half(0.02, "z_max"), "motion": {"z": {"ramp": {"to": -4e-3, "duration": 1.0}}}}},
                       "contacts": {"cut": {"between": ["low", "up"]}}})
     sim.step(steps)
     low, up = sim.body("low"), sim.body("up")

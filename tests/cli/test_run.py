@@ -130,7 +130,7 @@ bodies:
     type: fem
     mesh: {shape: block, length: 18 mm, width: 18 mm, height: 100 mm, element_size: 18 mm}
     material: ecoflex-00-30
-    position: -9 -9 0 mm
+    pose: {position: -9 -9 0 mm}
     fixed: [{set: z_min}]
   block: {type: rigid, shape: {box: 18 18 18 mm}, mass: 20 g, pose: {position: 0 0 109 mm}}
 joints:

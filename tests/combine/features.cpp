@@ -133,8 +133,8 @@ std::vector<Feature> list_features() {
       {"mass_matrix", words(fem, "mass_matrix")},
       {"damping", switched},
       {"gravity", switched},
-      {"initial_velocity", switched},
-      {"base", switched},
+      {"velocity", switched},
+      {"motion", switched},
       {"integrator", words(scene::grammar(), "integrator")},
       {"method", words(solver, "method")},
       {"tangent", words(solver, "tangent")},
@@ -174,9 +174,10 @@ std::vector<Feature> list_features() {
       {"effector", or_none(without(alternatives(effector, "point"), "points"))},
       {"probe", or_none(without(alternatives(probe, "point"), "points"))},
       {"sensor", or_none(kSensors)},
-      // With feedback, a closed loop replaces it.
+      // With feedback, a closed loop replaces it. The toys' own law is tested beside them.
       {"controller",
-       or_none(without(words(variants(items("controllers"), "type")), "closed-loop"))},
+       or_none(without(without(words(variants(items("controllers"), "type")), "closed-loop"),
+                       "proportional"))},
       {"regularisation", words(map_of(controller, "regularisation"), "of")},
       {"membrane", switched},
       {"contact_zones", switched},

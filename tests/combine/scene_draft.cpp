@@ -272,13 +272,13 @@ class Drafter {
     const std::string element = element_of();
     if (!element.empty()) text += ", element: " + element;
     if (has("damping")) text += ", damping: {mass: 0.5 1/s, stiffness: 1 ms}";
-    if (has("initial_velocity") && dynamic()) {
-      text += fmt::format(", initial_velocity: {{linear: {} m/s}}",
-                          within("0.02 0 0.05", "0.02 0.05 0"));
+    if (has("velocity") && dynamic()) {
+      text += fmt::format(", velocity: {{linear: {} m/s}}", within("0.02 0 0.05", "0.02 0.05 0"));
     }
-    if (has("base") && !loose) {
+    if (has("motion") && !loose) {
       text += fmt::format(
-          ", base: {{{}: {{sine: {{amplitude: {:.3g} mm, period: 200 ms}}}}, angle: {{ramp: {{to: "
+          ", motion: {{{}: {{sine: {{amplitude: {:.3g} mm, period: 200 ms}}}}, angle: {{ramp: "
+          "{{to: "
           "{:.3g} deg, duration: 100 ms}}}}, axis: 0 1 0}}",
           within("z", "y"), draw(1.0, 3.0), draw(2.0, 8.0));
     }
@@ -309,7 +309,7 @@ class Drafter {
     add("joints", "seam",
         fmt::format("{{type: {}, bodies: [<link>, <{}>]{}}}", of("link"), on.id, text));
     bodies_.push_back({"link", true, shape});
-    add_fem_body(bodies_.back(), fmt::format("position: {}", vector_text(at)));
+    add_fem_body(bodies_.back(), fmt::format("pose: {{position: {}}}", vector_text(at)));
   }
 
   // In statics it must be held, so other joints replace hinges, and there is no motor.
@@ -648,15 +648,14 @@ class Drafter {
             on->id, on->shape.side));
   }
 
-  // A box that moves along an axis. In statics it is at rest, or has a prescribed motion like a
-  // base.
+  // A box that moves along an axis. In statics it is at rest, or has a prescribed motion.
   void add_stone(const std::array<double, 3>& centre, std::size_t along, const char* axis) {
     std::string moves = "fixed: true";
     flies_ |= dynamic();
     if (dynamic()) {
       moves = fmt::format("mass: 20 g, velocity: {{linear: {} m/s, angular: {} rad/s}}", axis,
                           within("0 1 0", "3 1 2"));
-    } else if (has("base")) {
+    } else if (has("motion")) {
       moves = fmt::format(
           "motion: {{{}: {{ramp: {{to: 0.4 mm, duration: 60 ms}}}}, angle: {{ramp: {{to: 2 deg, "
           "duration: 60 ms}}}}, axis: {}, centre: {}}}",
@@ -669,7 +668,7 @@ class Drafter {
 
   // A silicone box that moves likewise. In statics it is fixed at its far side.
   void add_pillow(const std::array<double, 3>& centre, std::size_t along, const char* axis) {
-    const std::string moves = dynamic() ? fmt::format("initial_velocity: {{linear: {} m/s}}", axis)
+    const std::string moves = dynamic() ? fmt::format("velocity: {{linear: {} m/s}}", axis)
                                         : fmt::format("fixed: [{{set: {}_min}}]", "xyz"[along]);
     flies_ |= dynamic();
     std::array<double, 3> corner = centre;
@@ -677,7 +676,7 @@ class Drafter {
     add("bodies", "pillow",
         fmt::format(
             "{{type: fem, mesh: {{shape: block, length: 30 mm, width: 30 mm, height: 30 mm, "
-            "element_size: 15 mm}}, position: {}, density: 1000 kg/m^3, material: "
+            "element_size: 15 mm}}, pose: {{position: {}}}, density: 1000 kg/m^3, material: "
             "{{young_modulus: 100 kPa, poisson_ratio: 0.3}}, {}}}",
             vector_text(corner), moves));
   }

@@ -52,7 +52,7 @@ class SteadyStep : public ::testing::TestWithParam<int> {
     if (steered) {
       const Target circle = Target::circle({Vector3(0.099, 0, 0), 0.004, Vector3::UnitX(), 0.5, 0});
       controller = std::make_unique<InverseController>(
-          simulation, InverseSettings{.tasks = {{0, circle, {1.0}}}, .actuators = {}});
+          simulation, TargetSettings{.tasks = {{0, circle, {1.0}}}, .actuators = {}});
     } else {
       simulation.command(0,
                          {model::CommandKind::motion, model::Signal::sine({0.001, 0.001, 0.3, 0})});
@@ -142,7 +142,7 @@ TEST_P(SteadyStep, OfConstantCurvatureArms) {
       const Target circle =
           Target::circle({Vector3(0.0, 0.0, -0.54), 0.01, Vector3::UnitY(), 1.0, 0});
       controller = std::make_unique<InverseController>(
-          simulation, InverseSettings{.tasks = {{0, circle, {1.0, 1.0}}}, .actuators = {}});
+          simulation, TargetSettings{.tasks = {{0, circle, {1.0, 1.0}}}, .actuators = {}});
     }
     // Buffers grow when a step first needs them: the bound of a distance by a correction, for one.
     for (int i = 0; i < 100; ++i) simulation.step();

@@ -22,8 +22,8 @@ using sinew::testing::beam;
 
 double value(sim::Observables& list, std::string_view name) { return list.number(list.find(name)); }
 
-InverseSettings towards(const Vector3& place, std::vector<int> actuators = {}) {
-  InverseSettings settings;
+TargetSettings towards(const Vector3& place, std::vector<int> actuators = {}) {
+  TargetSettings settings;
   settings.tasks = {{0, Target::fixed(place), {1.0}}};
   settings.actuators = std::move(actuators);
   return settings;
@@ -43,7 +43,7 @@ TEST(ControllerObservables, AreItsTargetsAndErrors) {
     EXPECT_EQ(Vector3(target[0], target[1], target[2]), place);
     EXPECT_EQ(value(list, "tip.error"), controller.error(0));
     EXPECT_EQ(value(list, "error"), controller.error());
-    EXPECT_EQ(list.word(list.find("controller")), inverse_status_name(controller.status()));
+    EXPECT_EQ(list.word(list.find("controller")), controller_status_name(controller.status()));
   }
   EXPECT_GT(value(list, "tip.error"), 0.0);
   EXPECT_EQ(list.list()[list.find("tip.target")].components.back(), "tip.target_z");

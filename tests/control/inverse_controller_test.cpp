@@ -25,7 +25,7 @@ using sim::Simulation;
 using sinew::testing::beam;
 using sinew::testing::BeamOptions;
 
-InverseSettings to(const Vector3& place) {
+TargetSettings to(const Vector3& place) {
   return {.tasks = {{0, Target::fixed(place), {1.0}}}, .actuators = {}};
 }
 
@@ -44,7 +44,7 @@ TEST(InverseController, BringsTheTipToAPlaceThatItCanReach) {
   Simulation simulation(model);
   InverseController controller(simulation, to(goal));
   for (int i = 0; i < 300; ++i) controller.step();
-  EXPECT_EQ(controller.status(), InverseStatus::on_target);
+  EXPECT_EQ(controller.status(), ControllerStatus::on_target);
   EXPECT_LT(controller.error(), 5e-5);
   EXPECT_NEAR(controller.error(), (simulation.effector_value(0) - goal).norm(), 1e-15);
   EXPECT_LT(simulation.report().relative_residual, 1e-6);
@@ -56,10 +56,8 @@ TEST(InverseController, PublishedRegularisationBiasesAndASmallerOneLess) {
   const Vector3 goal = reachable(model);
   const auto bias = [&](Regularisation regularisation, double epsilon) {
     Simulation simulation(model);
-    InverseSettings settings = to(goal);
-    settings.regularisation = regularisation;
-    settings.epsilon = epsilon;
-    InverseController controller(simulation, settings);
+    InverseController controller(simulation, to(goal),
+                                 {.regularisation = regularisation, .epsilon = epsilon});
     for (int i = 0; i < 400; ++i) controller.step();
     return controller.error();
   };
@@ -80,7 +78,7 @@ TEST(InverseController, MeetsAJumpWithinTheRateLimits) {
   bool limited = false;
   for (int i = 0; i < 400; ++i) {
     controller.step();
-    limited = limited || controller.status() == InverseStatus::rate_limited;
+    limited = limited || controller.status() == ControllerStatus::rate_limited;
     for (int k = 0; k < 4; ++k) {
       const double moved =
           std::abs(simulation.actuator(k).motion - before[static_cast<std::size_t>(k)]);
@@ -89,7 +87,7 @@ TEST(InverseController, MeetsAJumpWithinTheRateLimits) {
     }
   }
   EXPECT_TRUE(limited);
-  EXPECT_EQ(controller.status(), InverseStatus::on_target);
+  EXPECT_EQ(controller.status(), ControllerStatus::on_target);
   EXPECT_LT(controller.error(), 1e-4);
 }
 
@@ -99,12 +97,12 @@ TEST(InverseController, HoldsStillWhereTheTargetIsOutOfReach) {
   Simulation simulation(beam(options));
   InverseController controller(simulation, to({0.05, 0.08, 0.06}));
   for (int i = 0; i < 500; ++i) controller.step();
-  EXPECT_EQ(controller.status(), InverseStatus::out_of_reach);
+  EXPECT_EQ(controller.status(), ControllerStatus::out_of_reach);
   const double distance = controller.error();
   double largest = 0.0, smallest = 1.0;
   for (int i = 0; i < 100; ++i) {
     controller.step();
-    EXPECT_EQ(controller.status(), InverseStatus::out_of_reach);
+    EXPECT_EQ(controller.status(), ControllerStatus::out_of_reach);
     largest = std::max(largest, controller.error());
     smallest = std::min(smallest, controller.error());
   }
@@ -159,7 +157,7 @@ TEST(InverseController, SaysWhenLimitsContradictEachOther) {
   Simulation simulation(beam(options));
   InverseController controller(simulation, to({0.099, 0.0, 0.0}));
   controller.step();
-  EXPECT_EQ(controller.status(), InverseStatus::limits_conflict);
+  EXPECT_EQ(controller.status(), ControllerStatus::limits_conflict);
   EXPECT_NE(controller.conflict().find("displacement of 'cable_0'"), std::string::npos)
       << controller.conflict();
   EXPECT_GE(simulation.actuator(0).effort, 3.0);
@@ -167,7 +165,7 @@ TEST(InverseController, SaysWhenLimitsContradictEachOther) {
 
 TEST(InverseController, LeavesOtherActuatorsToTheirCommands) {
   Simulation simulation(beam());
-  InverseSettings settings = to({0.098, 0.004, 0.002});
+  TargetSettings settings = to({0.098, 0.004, 0.002});
   settings.actuators = {1, 3};
   simulation.command(0, sinew::testing::pull(0.001));
   simulation.command(2, sinew::testing::tension(0.4));
@@ -179,7 +177,7 @@ TEST(InverseController, LeavesOtherActuatorsToTheirCommands) {
 
 TEST(InverseController, APassiveCableMayGoSlack) {
   Simulation simulation(beam());
-  InverseSettings settings = to({0.098, 0.0, 0.012});
+  TargetSettings settings = to({0.098, 0.0, 0.012});
   settings.actuators = {0};
   for (int k : {1, 2, 3}) simulation.command(k, sinew::testing::pull(-0.01));
   InverseController controller(simulation, settings);
@@ -192,7 +190,7 @@ TEST(InverseController, WeightsChooseWhatMatters) {
   options.tension = {.min = 0.0, .max = 1.0};
   const auto miss = [&](const std::vector<double>& weights) {
     Simulation simulation(beam(options));
-    InverseSettings settings = to({0.1, 0.03, 0.03});
+    TargetSettings settings = to({0.1, 0.03, 0.03});
     settings.tasks[0].weights = weights;
     InverseController controller(simulation, settings);
     for (int i = 0; i < 300; ++i) controller.step();
@@ -224,14 +222,15 @@ TEST(InverseController, OwnsItsActuatorsUntilDetached) {
 TEST(InverseController, BadSettingsAreErrors) {
   Simulation simulation(beam());
   EXPECT_EQ(kind_of([&] { InverseController c(simulation, {}); }), ErrorKind::no_effectors);
-  InverseSettings weights = to({0.1, 0, 0});
+  TargetSettings weights = to({0.1, 0, 0});
   weights.tasks[0].weights = {1.0, 2.0};
   EXPECT_EQ(kind_of([&] { InverseController c(simulation, weights); }), ErrorKind::wrong_length);
   weights.tasks[0].weights = {-1.0};
   EXPECT_EQ(kind_of([&] { InverseController c(simulation, weights); }), ErrorKind::out_of_range);
-  InverseSettings epsilon = to({0.1, 0, 0});
-  epsilon.epsilon = 0.0;
-  EXPECT_EQ(kind_of([&] { InverseController c(simulation, epsilon); }), ErrorKind::out_of_range);
+  EXPECT_EQ(kind_of([&] {
+              InverseController c(simulation, to({0.1, 0, 0}), {.epsilon = 0.0});
+            }),
+            ErrorKind::out_of_range);
   BeamOptions bare;
   bare.cables = 0;
   Simulation still(beam(bare));
@@ -295,7 +294,7 @@ TEST_P(OnAWall, ReachesWhatIsReachedByTouching) {
   Simulation simulation(model);
   InverseController controller(simulation, to(goal));
   for (int i = 0; i < 300; ++i) controller.step();
-  EXPECT_EQ(controller.status(), InverseStatus::on_target);
+  EXPECT_EQ(controller.status(), ControllerStatus::on_target);
   EXPECT_LT(controller.error(), 5e-5);
   EXPECT_GT(simulation.contacts().resultant(0).normal_force, 0.01);
   EXPECT_LT(simulation.report().violation, 1e-7);
@@ -312,9 +311,9 @@ TEST_P(OnAWall, RestsWhereTheWallHoldsItBack) {
   EXPECT_GT(error, 0.002);
   for (int i = 0; i < 50; ++i) controller.step();
   EXPECT_NEAR(controller.error(), error, 2e-5);
-  EXPECT_TRUE(controller.status() == InverseStatus::out_of_reach ||
-              controller.status() == InverseStatus::local_optimum)
-      << inverse_status_name(controller.status());
+  EXPECT_TRUE(controller.status() == ControllerStatus::out_of_reach ||
+              controller.status() == ControllerStatus::local_optimum)
+      << controller_status_name(controller.status());
   for (const contact::ContactPoint& point : simulation.contacts().points(0)) {
     EXPECT_GT(point.gap, -1e-7);
   }

@@ -30,7 +30,7 @@ TEST(WeldControl, SteersTheSecondBodyThroughTheFirst) {
   InverseController controller(simulation,
                                {.tasks = {{0, Target::fixed(target), {1.0}}}, .actuators = {}});
   for (int k = 0; k < 100; ++k) controller.step();
-  EXPECT_EQ(controller.status(), InverseStatus::on_target);
+  EXPECT_EQ(controller.status(), ControllerStatus::on_target);
   EXPECT_LT((simulation.effector_value(0) - target).norm(), 5e-5);
   EXPECT_LT(sim::joint_load(simulation, 0).gap, 1e-8);
 }

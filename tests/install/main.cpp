@@ -82,7 +82,7 @@ void bends_and_steers_a_beam() {
   control::InverseController controller(
       steered, {.tasks = {{.effector = 0, .target = control::Target::fixed(reached)}}});
   for (int i = 0; i < 40; ++i) controller.step();
-  expect(controller.status() == control::InverseStatus::on_target, "the controller's status");
+  expect(controller.status() == control::ControllerStatus::on_target, "the controller's status");
   expect(std::abs(controller.efforts()(0) - 0.2) < 2e-3, "the tension found again");
 }
 

@@ -141,7 +141,7 @@ TEST_F(RunRecorderTest, StatesReadBackBitForBit) {
 
 TEST_F(RunRecorderTest, TheTableHasUnitsAndWords) {
   sim::Simulation simulation(beam());
-  control::InverseSettings steering;
+  control::TargetSettings steering;
   steering.tasks = {{0, control::Target::fixed({0.099, 0.0, 0.004}), {1.0}}};
   control::InverseController controller(simulation, steering);
   sim::Observables list(simulation);
@@ -162,7 +162,7 @@ TEST_F(RunRecorderTest, TheTableHasUnitsAndWords) {
   ASSERT_EQ(first.size(), names.size());
   ASSERT_EQ(last.size(), names.size());
   EXPECT_EQ(first.back(), "start");
-  EXPECT_EQ(last.back(), control::inverse_status_name(controller.status()));
+  EXPECT_EQ(last.back(), control::controller_status_name(controller.status()));
   EXPECT_EQ(last[last.size() - 2], "solved");
   const auto number = [&](const std::string& heading) {
     const auto found = std::ranges::find(names, '"' + heading + '"');

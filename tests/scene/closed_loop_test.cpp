@@ -24,7 +24,7 @@
 namespace sinew::scene::closed_loop {
 namespace {
 
-using control::InverseStatus;
+using control::ControllerStatus;
 
 // A finger held by four taut cables, initially in equilibrium.
 const std::string kFinger = R"(sinew: 1
@@ -60,6 +60,12 @@ std::string with_limits(const std::string& limits) {
   return text;
 }
 
+std::unique_ptr<control::TargetController> closed_loop(sim::Simulation& simulation,
+                                                       control::TargetSettings settings,
+                                                       control::ClosedLoopSettings own) {
+  return std::make_unique<control::ClosedLoop>(simulation, std::move(settings), std::move(own));
+}
+
 struct Trial {
   explicit Trial(const std::string& text, int threads = 1)
       : robot(build(parse_scene_text(text, "scene.yaml", {}))),
@@ -67,12 +73,13 @@ struct Trial {
     simulation->solve_static();
   }
   void attach(double gain, const Vector3& way, double integral = 0.0) {
-    control::InverseSettings settings;
     target = tip() + way;
-    settings.tasks = {{0, control::Target::fixed(target), {1.0, 1.0, 0.0}}};
-    settings.tolerance = 1e-6;
-    settings.feedback = {.sensors = {0}, .gain = gain, .integral = integral};
-    loop = control::make_controller(*simulation, settings);
+    control::TargetSettings settings{
+        .tasks = {{0, control::Target::fixed(target), {1.0, 1.0, 0.0}}},
+        .actuators = {},
+        .tolerance = 1e-6};
+    loop = closed_loop(*simulation, std::move(settings),
+                       {.sensors = {0}, .gain = gain, .integral = integral});
   }
   Vector3 tip() const { return simulation->effector_value(0); }
   // Error in the directions with non-zero weight, m.
@@ -100,9 +107,9 @@ TEST(ClosedLoop, ErrorsFallAsThoseOfFirstOrder) {
   for (std::size_t k = 0; k < errors.size(); ++k) {
     EXPECT_NEAR(errors[k], start * std::pow(0.9, static_cast<double>(k + 1)), 0.01 * start) << k;
   }
-  EXPECT_EQ(run.loop->status(), InverseStatus::moving);
+  EXPECT_EQ(run.loop->status(), ControllerStatus::moving);
   run.errors(60);
-  EXPECT_EQ(run.loop->status(), InverseStatus::on_target);
+  EXPECT_EQ(run.loop->status(), ControllerStatus::on_target);
   // Both are differences of positions of 80 mm, taken in another order.
   EXPECT_NEAR(run.loop->measured_error(0), run.loop->error(0), 1e-16)
       << "an exact sensor without delay";
@@ -168,10 +175,9 @@ TEST(ClosedLoop, TurnsWhatAnOrientationMeasures) {
             "sensors:\n  turn: {type: orientation, body: finger, at: [0 0 80 mm, 5 0 80 mm, 0 "
             "5 80 mm]}\n");
   const Vector3 way(0.03, -0.02, 0.0);
-  control::InverseSettings settings;
+  control::TargetSettings settings;
   settings.tasks = {{0, control::Target::fixed(run.tip() + way), {1.0, 1.0, 0.0}}};
-  settings.feedback = {.sensors = {0}, .gain = 20.0};
-  run.loop = control::make_controller(*run.simulation, settings);
+  run.loop = closed_loop(*run.simulation, settings, {.sensors = {0}, .gain = 20.0});
   for (int k = 0; k < 40; ++k) run.simulation->step();
   EXPECT_LT(run.loop->error(0), 1e-4);
   EXPECT_LT((run.tip() - settings.tasks[0].target.at(0.0)).head<2>().norm(), 1e-3);
@@ -182,14 +188,14 @@ TEST(ClosedLoop, HoldsWhileASensorIsSilent) {
   run.attach(10.0, {1e-3, 0.0, 0.0});
   const Vector3 seen = run.tip();
   sense::sensors_of(*run.simulation).feed(0, 0.0, {seen.data(), 3});
-  std::vector<InverseStatus> statuses;
+  std::vector<ControllerStatus> statuses;
   for (int k = 0; k < 14; ++k) {
     run.simulation->step();
     statuses.push_back(run.loop->status());
   }
   // The sample taken at 0 s is used from 0 to 100 ms, and no later.
-  EXPECT_EQ(std::ranges::count(statuses, InverseStatus::moving), 11);
-  EXPECT_EQ(statuses[11], InverseStatus::holding);
+  EXPECT_EQ(std::ranges::count(statuses, ControllerStatus::moving), 11);
+  EXPECT_EQ(statuses[11], ControllerStatus::holding);
   EXPECT_THAT(run.loop->conflict(), testing::HasSubstr("'tip' is silent for 0.1"));
   const double command = run.simulation->actuator(0).command.signal.value(0.0);
   const Vector3 held = run.tip();
@@ -199,26 +205,25 @@ TEST(ClosedLoop, HoldsWhileASensorIsSilent) {
   const Vector3 now = run.tip();
   sense::sensors_of(*run.simulation).feed(0, run.simulation->time(), {now.data(), 3});
   run.simulation->step();
-  EXPECT_EQ(run.loop->status(), InverseStatus::moving);
+  EXPECT_EQ(run.loop->status(), ControllerStatus::moving);
   EXPECT_TRUE(run.loop->conflict().empty());
 }
 
 TEST(ClosedLoop, LeavesTheScenesCommandsUntilTheFirstSample) {
   Robot robot = build(parse_scene_text(with_sensor(", delay: 50 ms"), "scene.yaml", {}));
   sim::Simulation simulation(robot.model);
-  control::InverseSettings settings;
+  control::TargetSettings settings;
   settings.tasks = {{0, control::Target::fixed({0.005, 0.0, 0.08}), {1.0}}};
-  settings.feedback = {.sensors = {0}};
-  const auto loop = control::make_controller(simulation, settings);
+  const auto loop = closed_loop(simulation, settings, {.sensors = {0}});
   for (int k = 0; k < 5; ++k) simulation.step();
-  EXPECT_EQ(loop->status(), InverseStatus::holding);
+  EXPECT_EQ(loop->status(), ControllerStatus::holding);
   EXPECT_THAT(loop->conflict(), testing::HasSubstr("'tip' has delivered nothing yet"));
   EXPECT_DOUBLE_EQ(simulation.actuator(0).effort, 3.0);
   simulation.step();
-  EXPECT_EQ(loop->status(), InverseStatus::moving);
+  EXPECT_EQ(loop->status(), ControllerStatus::moving);
   EXPECT_EQ(simulation.actuator(0).command.kind, model::CommandKind::motion);
   simulation.reset();
-  EXPECT_EQ(loop->status(), InverseStatus::not_started);
+  EXPECT_EQ(loop->status(), ControllerStatus::not_started);
   EXPECT_EQ(simulation.actuator(0).command.kind, model::CommandKind::effort);
 }
 
@@ -226,7 +231,7 @@ TEST(ClosedLoop, SaysThatLimitsHoldEffectorsBack) {
   Trial run(with_limits("limits: {tension: {max: 4 N}, displacement: {rate: 50 mm/s}}, "));
   run.attach(10.0, {0.03, 0.0, 0.0});
   run.errors(60);
-  EXPECT_EQ(run.loop->status(), InverseStatus::at_limits);
+  EXPECT_EQ(run.loop->status(), ControllerStatus::at_limits);
   for (int k = 0; k < 4; ++k) EXPECT_LT(run.simulation->actuator(k).effort, 4.02);
 }
 
@@ -234,11 +239,10 @@ TEST(ClosedLoop, SaysThatLimitsHoldEffectorsBack) {
 TEST(ClosedLoop, GoesOnBitForBit) {
   const std::string scene = with_sensor(", noise: 0.1 mm, delay: 25 ms, rate: 50 Hz, seed: 3");
   const auto attach = [](sim::Simulation& simulation) {
-    control::InverseSettings settings;
+    control::TargetSettings settings;
     settings.tasks = {
         {0, control::Target::circle({.centre = {0.0, 0.0, 0.078}, .radius = 0.004}), {1.0}}};
-    settings.feedback = {.sensors = {0}, .gain = 8.0, .integral = 5.0};
-    return control::make_controller(simulation, settings);
+    return closed_loop(simulation, settings, {.sensors = {0}, .gain = 8.0, .integral = 5.0});
   };
   Trial run(scene);
   run.loop = attach(*run.simulation);
@@ -261,7 +265,7 @@ TEST(ClosedLoop, GoesOnBitForBit) {
   run.errors(10);
   EXPECT_EQ(run.simulation->state(), whole);
   run.simulation->reset();
-  EXPECT_EQ(run.loop->status(), InverseStatus::not_started);
+  EXPECT_EQ(run.loop->status(), ControllerStatus::not_started);
 }
 
 // An interrupted step does not change the loop.
@@ -289,7 +293,7 @@ TEST(ClosedLoop, OwnsItsActuators) {
   run.errors(5);
   const model::Command other{model::CommandKind::effort, model::Signal::constant(1.0)};
   EXPECT_THROW(run.simulation->command(0, other), Error);
-  control::InverseSettings second;
+  control::TargetSettings second;
   second.tasks = {{0, control::Target::fixed(run.tip()), {1.0}}};
   EXPECT_THROW(control::InverseController(*run.simulation, second), Error);
   const double command = run.simulation->actuator(0).command.signal.value(0.0);
@@ -314,13 +318,13 @@ TEST(ClosedLoopScene, IsBuiltAndSteers) {
                            hold(kTask + ", gain: 8 1/s, integral: 16 1/s^2, timeout: 50 ms");
   Trial run(text);
   ASSERT_EQ(run.robot.controllers.size(), 1U);
-  const auto& settings = run.robot.controllers[0].settings;
-  ASSERT_TRUE(settings.feedback);
-  EXPECT_EQ(settings.feedback->gain, 8.0);
-  EXPECT_EQ(settings.feedback->integral, 16.0);
-  EXPECT_EQ(settings.feedback->timeout, 0.05);
-  EXPECT_EQ(settings.feedback->sensors, std::vector<int>{0});
-  run.loop = control::make_controller(*run.simulation, settings);
+  run.loop = control::make_controller(*run.simulation, run.robot.controllers[0].settings);
+  const auto* loop = dynamic_cast<const control::ClosedLoop*>(run.loop.get());
+  ASSERT_NE(loop, nullptr);
+  EXPECT_EQ(loop->own_settings().gain, 8.0);
+  EXPECT_EQ(loop->own_settings().integral, 16.0);
+  EXPECT_EQ(loop->own_settings().timeout, 0.05);
+  EXPECT_EQ(loop->own_settings().sensors, std::vector<int>{0});
   for (int k = 0; k < 250; ++k) run.simulation->step();
   double sum = 0.0;
   for (int k = 0; k < 50; ++k) {
@@ -328,7 +332,7 @@ TEST(ClosedLoopScene, IsBuiltAndSteers) {
     sum += run.loop->error();
   }
   EXPECT_LT(sum / 50.0, 1e-4) << "0.1 mm of noise, filtered by the loop";
-  EXPECT_EQ(run.loop->status(), InverseStatus::on_target);
+  EXPECT_EQ(run.loop->status(), ControllerStatus::on_target);
 }
 
 struct Wrong {

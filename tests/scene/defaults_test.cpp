@@ -92,9 +92,12 @@ class Dump {
       add(contact.motion->translation[0].value(1.0), contact.motion->angle.value(1.0));
     }
     for (const auto& controller : scene.controllers) {
-      add(controller.regularisation, controller.epsilon.value_or(-1));
-      const auto feedback = controller.feedback.value_or(control::Feedback{});
-      add(feedback.gain, feedback.integral, feedback.timeout);
+      if (const auto* inverse = controller.as<InverseDescription>()) {
+        add(inverse->settings.regularisation, inverse->settings.epsilon);
+      }
+      if (const auto* loop = controller.as<ClosedLoopDescription>()) {
+        add(loop->settings.gain, loop->settings.integral, loop->settings.timeout);
+      }
       for (const auto& task : controller.tasks) {
         for (const double weight : task.weights) add(weight);
         for (const double time : {0.0, 0.3, 1.7}) add(task.target.at(time));
@@ -107,7 +110,7 @@ class Dump {
   void add_body(const BodyDescription& body) {
     add(body.mesh.unit, body.material.model, body.mass_distribution, body.mass_matrix);
     add(body.mass_damping, body.stiffness_damping, body.fixed[0].normal, body.fixed[0].within);
-    const auto start = body.initial_velocity.value_or(InitialVelocityDescription{});
+    const auto start = body.velocity.value_or(InitialVelocityDescription{});
     add(start.linear, start.angular);
   }
   void add_probe(const ProbeDescription& probe) {

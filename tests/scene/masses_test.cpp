@@ -83,7 +83,7 @@ TEST(Masses, WrongOnesAreErrors) {
 
 TEST(InitialVelocity, IsThatOfARigidBody) {
   const std::string text =
-      scene("", "bdf2", "    initial_velocity: {linear: 1 2 3 mm/s, angular: 0 0 2 rad/s}\n");
+      scene("", "bdf2", "    velocity: {linear: 1 2 3 mm/s, angular: 0 0 2 rad/s}\n");
   sim::Simulation simulation(build(parsed(text)).model);
   const mechanics::Body& body = simulation.body(0);
   const Points& rest = body.model().mesh().nodes;
@@ -100,9 +100,9 @@ TEST(InitialVelocity, IsThatOfARigidBody) {
 }
 
 TEST(InitialVelocity, NeedsInertia) {
-  const std::string moving = "    initial_velocity: {linear: 1 0 0 m/s}\n";
+  const std::string moving = "    velocity: {linear: 1 0 0 m/s}\n";
   expect_error(scene("", "quasi-static", moving), ErrorKind::conflicting_keys, "quasi-static", 10);
-  EXPECT_NO_THROW(build(parsed(scene("", "quasi-static", "    initial_velocity: {}\n"))));
+  EXPECT_NO_THROW(build(parsed(scene("", "quasi-static", "    velocity: {}\n"))));
 }
 
 }  // namespace

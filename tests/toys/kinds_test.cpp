@@ -1,4 +1,4 @@
-// Kinds of bodies and actuators that the library does not know, in scenes.
+// Kinds of bodies, actuators and controllers that the library does not know, in scenes.
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "sinew/contact/contact_state.hpp"
+#include "sinew/control/controller_observables.hpp"
 #include "sinew/control/target_controller.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/mechanics/body.hpp"
@@ -22,6 +23,7 @@
 #include "sinew/scene/actuator_kind.hpp"
 #include "sinew/scene/body_kind.hpp"
 #include "sinew/scene/build.hpp"
+#include "sinew/scene/controller_kind.hpp"
 #include "sinew/scene/joint_kind.hpp"
 #include "sinew/scene/load_kind.hpp"
 #include "sinew/scene/material_kind.hpp"
@@ -200,6 +202,77 @@ TEST(Kinds, AControllerSteersABodyThroughAnActuatorThatItDoesNotKnow) {
   EXPECT_NEAR(place(simulation).x(), 0.005, 1e-6);
 }
 
+// Of the toys' own kind.
+const std::string kFollow =
+    "controllers: {follow: {type: proportional, effectors: {place: {target: 5 0 80 mm, weight: 1 0 "
+    "0}}}}\n";
+
+TEST(Kinds, AControllerOfItsOwnSteers) {
+  const scene::Robot made = robot("pull: 0 N", kFollow);
+  EXPECT_EQ(made.description.controllers[0].kind->word, std::string("proportional"));
+  EXPECT_EQ(&made.controller("follow"), made.first_controller());
+  sim::Simulation simulation(made.model);
+  const auto controller = control::make_controller(simulation, made.first_controller()->settings);
+  for (int k = 0; k < 100; ++k) simulation.step();
+  EXPECT_NEAR(place(simulation).x(), 0.005, 1e-6);
+  EXPECT_EQ(controller->status(), control::ControllerStatus::on_target);
+  EXPECT_GT(controller->efforts()[0], 0.1) << "5 mm against 50 N/m";
+  controller->set_target(0, control::Target::fixed({0.002, 0.0, 0.08}));
+  for (int k = 0; k < 100; ++k) simulation.step();
+  EXPECT_NEAR(place(simulation).x(), 0.002, 1e-6);
+}
+
+TEST(Kinds, AControllerOfItsOwnIsRecorded) {
+  const scene::Robot made = robot("pull: 0 N", kFollow);
+  sim::Simulation simulation(made.model);
+  const auto controller = control::make_controller(simulation, made.first_controller()->settings);
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / fmt::format("sinew_controller_{}", getpid());
+  record::RecordSettings settings;
+  settings.folder = folder;
+  sim::Observables list(simulation);
+  control::add_controller(list, controller.get());
+  record::RunRecorder recorder(std::move(list), settings);
+  for (int k = 0; k < 3; ++k) {
+    simulation.step();
+    recorder.after_step();
+  }
+  recorder.finish();
+  const record::RunFile file(folder / "run.h5");
+  EXPECT_EQ(file.series("/controller/follow/change").size(), 4U);
+  std::ostringstream table;
+  table << std::ifstream(folder / "run.csv").rdbuf();
+  for (const char* heading : {"follow.change [N]", "place.error [m]", "controller"}) {
+    EXPECT_NE(table.str().find(heading), std::string::npos) << heading;
+  }
+  EXPECT_NE(table.str().find("moving"), std::string::npos);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Kinds, AControllerOfItsOwnGoesOnBitForBit) {
+  const scene::Robot made = robot("pull: 0 N", kFollow, "bdf2");
+  sim::Simulation first(made.model);
+  const auto controller = control::make_controller(first, made.first_controller()->settings);
+  controller->set_target(0, control::Target::fixed({0.004, 0.0, 0.08}));
+  for (int k = 0; k < 10; ++k) first.step();
+  const auto copy = first.clone();
+  const auto again = control::make_controller(*copy, controller->all_settings());
+  copy->restore(first.state());
+  sim::Simulation read(made.model);
+  const auto other = control::make_controller(read, controller->all_settings());
+  sim::parse_state(read, sim::format_state(first), "state");
+  EXPECT_EQ(again->status(), controller->status());
+  for (int k = 0; k < 10; ++k) {
+    first.step();
+    copy->step();
+    read.step();
+  }
+  EXPECT_EQ(copy->state(), first.state());
+  EXPECT_EQ(read.state(), first.state());
+  first.reset();
+  EXPECT_EQ(controller->status(), control::ControllerStatus::not_started);
+}
+
 TEST(Kinds, ErrorsNameItsKeys) {
   try {
     robot("tension: 1 N");
@@ -227,6 +300,9 @@ TEST(Kinds, AreRegisteredBeforeTheGrammarIsUsed) {
   EXPECT_EQ(kind_of([] { scene::register_probe_kind(late_probe); }), ErrorKind::bad_argument);
   EXPECT_EQ(kind_of([] { scene::register_joint_kind(late_joint); }), ErrorKind::bad_argument);
   EXPECT_EQ(kind_of([] { scene::register_material_kind(late_material); }), ErrorKind::bad_argument);
+  static const scene::ControllerKind late_controller{.word = "late"};
+  EXPECT_EQ(kind_of([] { scene::register_controller_kind(late_controller); }),
+            ErrorKind::bad_argument);
 }
 
 TEST(Kinds, WordsAreTakenOnce) {
@@ -244,6 +320,8 @@ TEST(Kinds, WordsAreTakenOnce) {
   EXPECT_EQ(kind_of([] { scene::register_joint_kind(scene::hinge_kind()); }),
             ErrorKind::duplicate_key);
   EXPECT_EQ(kind_of([] { scene::register_material_kind(scene::yeoh_kind()); }),
+            ErrorKind::duplicate_key);
+  EXPECT_EQ(kind_of([] { scene::register_controller_kind(scene::inverse_kind()); }),
             ErrorKind::duplicate_key);
 }
 

@@ -8,9 +8,11 @@
 #include "sinew/scene/actuator_fields.hpp"
 #include "sinew/scene/actuator_kind.hpp"
 #include "sinew/scene/body_kind.hpp"
+#include "sinew/scene/controller_kind.hpp"
 #include "sinew/scene/grammar_forms.hpp"
 
 #include "couple.hpp"
+#include "proportional.hpp"
 #include "speedometer.hpp"
 #include "spring_point.hpp"
 #include "strut.hpp"
@@ -91,6 +93,29 @@ void add_strut_of(const scene::ActuatorSite& site) {
   add_strut(site.builder.data(), site.on_body(*site.actuator.as<StrutSettings>()));
 }
 
+std::shared_ptr<const KeyTable> proportional_table() {
+  return make_table({.name = "controller: type proportional",
+                     .description = "Descends the error of its first effector.",
+                     .keys = {tasks_key(true),
+                              driven_key(),
+                              {.name = "gain",
+                               .forms = {quantity(plain_number(), positive())},
+                               .example = "0.5",
+                               .default_text = "0.5",
+                               .description = "Part of the error that a step is to remove."}}});
+}
+
+std::any read_proportional(const scene::ControllerEntry& entry) {
+  ProportionalSettings settings{.name = entry.controller.name};
+  entry.fields.read("gain", settings.gain);
+  return settings;
+}
+
+control::ControllerSettings build_proportional(const scene::ControllerSite& site) {
+  return control::settings_for<Proportional>(site.targets,
+                                             *site.controller.as<ProportionalSettings>());
+}
+
 constexpr scene::BodyKind kSpringPoint{.word = "spring-point",
                                        .description = "A point on a spring.",
                                        .noun = "a point on a spring",
@@ -103,13 +128,19 @@ constexpr scene::ActuatorKind kStrut{.words = &kStrutKind,
                                      .table = strut_table,
                                      .read = read_strut,
                                      .add = add_strut_of};
+constexpr scene::ControllerKind kProportional{.word = "proportional",
+                                              .description = "A proportional law.",
+                                              .table = proportional_table,
+                                              .read = read_proportional,
+                                              .build = build_proportional};
 
 }  // namespace
 
 void register_toys() {
   static const bool done =
       (scene::register_body_kind(kSpringPoint), scene::register_actuator_kind(kStrut),
-       scene::register_sensor_kind(kSpeedometer), scene::register_load_kind(kCouple), true);
+       scene::register_sensor_kind(kSpeedometer), scene::register_load_kind(kCouple),
+       scene::register_controller_kind(kProportional), true);
   static_cast<void>(done);
 }
 

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sinew/control/inverse_controller.hpp"
+#include "sinew/control/target_controller.hpp"
 #include "sinew/run/state.hpp"
 #include "sinew/sim/simulation.hpp"
 
@@ -81,12 +81,13 @@ TEST(FollowSource, CarriesOutRequestsInTurnsOnly) {
   EXPECT_EQ(kind(reset.get()), "not-in-this-version");
   EXPECT_EQ(kind(target.get()), "no-effectors");
   EXPECT_EQ(kind(controller.get()), "not-in-this-version");
-  control::InverseController own(*script.simulation, script.shown.controllers.at(0).settings);
-  script.source.observe("own", &own);
+  const auto own =
+      control::make_controller(*script.simulation, script.shown.controllers.at(0).settings);
+  script.source.observe("own", own.get());
   auto steered = script.ask(SetTarget{"tip", Vector3(0.06, 0.01, 0.012)});
   ASSERT_TRUE(script.update());
   EXPECT_EQ(kind(steered.get()), "");
-  EXPECT_EQ(own.settings().tasks.at(0).target.at(0.0).z(), 0.012);
+  EXPECT_EQ(own->settings().tasks.at(0).target.at(0.0).z(), 0.012);
   script.source.observe({}, nullptr);
 }
 

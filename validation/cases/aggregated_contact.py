@@ -41,9 +41,9 @@ def rigid(shape, height):
 
 
 def soft():
-    return {"type": "fem", "element": "tet4-patch", "material": SILICONE, "density": 1000.0, "position": [0.013, 0.015, 0.0201],
+    return {"type": "fem", "element": "tet4-patch", "material": SILICONE, "density": 1000.0, "pose": {"position": [0.013, 0.015, 0.0201]},
             "mesh": {"shape": "block", "length": 0.023, "width": 0.021, "height": 0.012, "element_size": 0.003}, "fixed": {"set": "z_max"},
-            "base": {"z": {"ramp": {"to": -2.1e-3, "duration": 0.2}}, "x": {"ramp": {"to": 3e-3, "start": 0.22, "duration": 0.2}}}}
+            "motion": {"z": {"ramp": {"to": -2.1e-3, "duration": 0.2}}, "x": {"ramp": {"to": 3e-3, "start": 0.22, "duration": 0.2}}}}
 
 
 def pressed(other, friction, edge, zone, steps=22):

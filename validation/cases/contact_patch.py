@@ -132,7 +132,7 @@ def under_a_plate(case, element, force=20.0):
 
 
 def half(element, cells, height, face, **more):
-    return {"type": "fem", "element": element, "density": 1000.0, "position": [0, 0, height], "fixed": {"set": face}, **more,
+    return {"type": "fem", "element": element, "density": 1000.0, "pose": {"position": [0, 0, height]}, "fixed": {"set": face}, **more,
             "mesh": {"shape": "block", "length": SIZE[0], "width": SIZE[1], "height": SIZE[2], "element_size": SIZE[0] / cells},
             "material": {"model": "saint-venant-kirchhoff", "young_modulus": YOUNG, "poisson_ratio": 0.0}}
 
@@ -144,7 +144,7 @@ def between_blocks(case, element):
         sim = sinew.load({
             "sinew": 1, "time_step": 0.25, "solver": {**SOLVER, "tolerance": 1e-10},
             "bodies": {"low": half(element, cells[0], 0.0, "z_min"),
-                       "up": half(element, cells[1], SIZE[2], "z_max", base={"z": {"ramp": {"to": -way, "duration": 1.0}}})},
+                       "up": half(element, cells[1], SIZE[2], "z_max", motion={"z": {"ramp": {"to": -way, "duration": 1.0}}})},
             "contacts": {"cut": {"between": ["low", "up"], "friction": 0.3}}})
         sim.step(4)
         displaced, spread = 0.0, 0.0

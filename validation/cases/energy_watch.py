@@ -73,8 +73,8 @@ def shaken(random, period):
 
 
 def carried(random, period):
-    base = {"x": {"sine": {"amplitude": float(random.uniform(0.001, 0.01)), "period": period}}}
-    return {"gravity": [0, 0, float(random.choice([0.0, -G]))], "bodies": {"b": block(random, base=base)}}
+    motion = {"x": {"sine": {"amplitude": float(random.uniform(0.001, 0.01)), "period": period}}}
+    return {"gravity": [0, 0, float(random.choice([0.0, -G]))], "bodies": {"b": block(random, motion=motion)}}
 
 
 def pulled(random, period):
@@ -137,10 +137,10 @@ def spin(seed):
     sim = sinew.load({
         "sinew": 1, "gravity": [0, 0, 0], "time_step": float(random.uniform(0.2, 0.8)) / speed,
         "integrator": {"type": "generalized-alpha", "spectral_radius": float(random.uniform(0.9, 1.0))},
-        "bodies": {"b": {"type": "fem", "density": 1000.0, "element": str(random.choice(["hex8", "tet4"])), "position": [-0.05, -0.01, -0.01],
+        "bodies": {"b": {"type": "fem", "density": 1000.0, "element": str(random.choice(["hex8", "tet4"])), "pose": {"position": [-0.05, -0.01, -0.01]},
                          "mesh": {"shape": "block", "length": 0.1, "width": 0.02, "height": 0.02, "element_size": 0.02},
                          "material": {"model": "neo-hookean", "young_modulus": float(10 ** random.uniform(5.0, 6.5)), "poisson_ratio": 0.3},
-                         "initial_velocity": {"angular": [0, 0, speed]}}}})
+                         "velocity": {"angular": [0, 0, speed]}}}})
     body, flagged, above = sim.body("b"), False, 0
     start = body.kinetic_energy
     for _ in range(200):

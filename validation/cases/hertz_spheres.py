@@ -59,7 +59,7 @@ class Balls:
                             "fixed": [{"set": "far", "axes": "z"}, in_plane("x"), in_plane("y"), centre_of(radius if name == "up" else -radius)],
                             "material": {"model": "neo-hookean", "young_modulus": stiff, "poisson_ratio": nu}}
         steps = 4 if whole else 2
-        bodies["up"] |= {"position": [0, 0, self.apart], "base": {"z": {"ramp": {"to": -self.depth, "duration": 1.0}}}}
+        bodies["up"] |= {"pose": {"position": [0, 0, self.apart]}, "motion": {"z": {"ramp": {"to": -self.depth, "duration": 1.0}}}}
         self.sim = sinew.load({"sinew": 1, "time_step": 1.0 / steps, "solver": {"ordering": "metis", "tolerance": 1e-9}, "bodies": bodies,
                                "contacts": {"press": {"between": ["low", "up"]}}})
         self.sim.step(steps)

@@ -62,7 +62,7 @@ class Press:
                 {"set": "far", **({"axes": "z"} if self.slides and name == "block" else {})}, in_plane("x"),
                 {"box": [-1, -1, -1, 1, 1, 1], "axes": "y"}],
                 "material": {"model": self.law, "young_modulus": young, "poisson_ratio": 0.3}}
-        bodies["cylinder"] |= {"position": [0, 0, self.apart], "base": {"z": {"ramp": {"to": -depth, "duration": 1.0}}}}
+        bodies["cylinder"] |= {"pose": {"position": [0, 0, self.apart]}, "motion": {"z": {"ramp": {"to": -depth, "duration": 1.0}}}}
         self.sim = sinew.load({"sinew": 1, "time_step": 1.0 / self.steps, "solver": {"ordering": "metis", "tolerance": 1e-9}, "bodies": bodies,
                                "contacts": {"press": {"between": ["block", "cylinder"], "friction": self.friction}}})
         self.sim.step(self.steps)

@@ -76,7 +76,7 @@ def slides(case, axis):
     box = {**rigid, "shape": {"box": [LENGTH, LENGTH, 0.02]}}
     file = write_box(case.scratch, [LENGTH, LENGTH, 0.02])
     surface, hull = ({**rigid, "mesh": {"file": file, "use": use}} for use in ("surface", "convex"))
-    soft = {"type": "fem", "element": "hex8", "density": 1000.0, "damping": {"stiffness": 2e-3}, "position": [-0.5 * LENGTH, -0.5 * LENGTH, 0.0],
+    soft = {"type": "fem", "element": "hex8", "density": 1000.0, "damping": {"stiffness": 2e-3}, "pose": {"position": [-0.5 * LENGTH, -0.5 * LENGTH, 0.0]},
             "mesh": {"shape": "block", "length": LENGTH, "width": LENGTH, "height": 0.02, "element_size": 0.01},
             "material": {"model": "neo-hookean", "young_modulus": 1e6, "poisson_ratio": 0.3}}
     theory = G * (np.sin(ANGLE) - SLIDE * np.cos(ANGLE))

@@ -146,7 +146,7 @@ def ratios(case):
 
 def pads(case, heavy=0.5, ratio=1e6):
     light = heavy / ratio
-    pad = {"type": "fem", "element": "hex8", "density": 1000.0, "damping": {"stiffness": 5e-3}, "position": [-0.04, -0.02, -0.02],
+    pad = {"type": "fem", "element": "hex8", "density": 1000.0, "damping": {"stiffness": 5e-3}, "pose": {"position": [-0.04, -0.02, -0.02]},
            "fixed": [{"set": "z_min"}], "mesh": {"shape": "block", "length": 0.08, "width": 0.04, "height": 0.02, "element_size": 0.01},
            "material": {"model": "neo-hookean", "young_modulus": 1e5, "poisson_ratio": 0.4}}
     beside = {"heavy": cube(heavy, [-0.02, 0, 0.01]), "light": cube(light, [0.02, 0, 0.01])}

@@ -39,7 +39,7 @@ class Impact:
         sim = sinew.load({
             "sinew": 1, "time_step": step, "integrator": integrator, "solver": SOLVER,
             "bodies": {"bar": {"type": "fem", "mesh": {"file": str(path), "unit": "m"}, "density": DENSITY,
-                               "initial_velocity": {"linear": [-SPEED, 0.0, 0.0]},
+                               "velocity": {"linear": [-SPEED, 0.0, 0.0]},
                                "material": {"model": "neo-hookean", "young_modulus": YOUNG, "poisson_ratio": 0.0}}},
             "contacts": {"wall": {"body": "bar", "nodes": {"set": "x_min"}, "surface": {"plane": {"normal": [1, 0, 0]}}}}})
         bar, wall = sim.body("bar"), sim.contact("wall")

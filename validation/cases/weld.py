@@ -27,7 +27,7 @@ LENGTH, SIDE, DENSITY, GRAVITY = 0.1, 0.02, 1070.0, 9.81
 
 
 def part(length, size, young, element, poisson, at=0.0, fixed=False):
-    body = {"type": "fem", "position": [at, 0, 0],
+    body = {"type": "fem", "pose": {"position": [at, 0, 0]},
             "mesh": {"shape": "block", "length": length, "width": SIDE, "height": SIDE,
                      "element_size": size},
             "material": {"model": "neo-hookean", "young_modulus": young, "poisson_ratio": poisson},

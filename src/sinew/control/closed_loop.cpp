@@ -63,21 +63,25 @@ void check_number(const char* name, double value, bool good, const char* remedy)
               fmt::format("{} is {:g}", name, value), remedy);
 }
 
-void check_feedback(const model::Model& model, const InverseSettings& settings) {
-  const Feedback& feedback = *settings.feedback;
-  check_number("gain", feedback.gain, feedback.gain > 0.0, "give 1/s, above 0");
-  check_number("integral", feedback.integral, feedback.integral >= 0.0, "give 1/s^2, 0 or more");
-  check_number("timeout", feedback.timeout, feedback.timeout > 0.0, "give s, above 0");
-  if (feedback.sensors.size() != settings.tasks.size()) {
+void check_loop(const model::Model& model, const TargetSettings& settings,
+                const ClosedLoopSettings& own) {
+  if (settings.tasks.empty()) {
+    throw Error(ErrorKind::no_effectors, {.item = "closed loop"}, "there is no effector to steer",
+                "name at least one effector and its target");
+  }
+  check_number("gain", own.gain, own.gain > 0.0, "give 1/s, above 0");
+  check_number("integral", own.integral, own.integral >= 0.0, "give 1/s^2, 0 or more");
+  check_number("timeout", own.timeout, own.timeout > 0.0, "give s, above 0");
+  if (own.sensors.size() != settings.tasks.size()) {
     throw Error(
         ErrorKind::wrong_length, {.item = "closed loop"},
-        fmt::format("{} sensors for {} effectors", feedback.sensors.size(), settings.tasks.size()),
+        fmt::format("{} sensors for {} effectors", own.sensors.size(), settings.tasks.size()),
         "give one sensor for each effector");
   }
   for (std::size_t t = 0; t < settings.tasks.size(); ++t) {
-    const sense::SensorModel& sensor = sense::sensors_of(model).at(at(feedback.sensors[t]));
+    const sense::SensorModel& sensor = sense::sensors_of(model).at(at(own.sensors[t]));
     check_kind(sensor, model.effector(settings.tasks[t].effector));
-    check_rate(sensor, model.step().time_step, feedback.timeout);
+    check_rate(sensor, model.step().time_step, own.timeout);
   }
 }
 
@@ -85,10 +89,10 @@ Vector3 value_of(const sense::Channel& sensor) { return Vector3(sensor.value().d
 
 }  // namespace
 
-ClosedLoop::ClosedLoop(sim::Simulation& simulation, InverseSettings settings)
-    : TargetController(simulation, std::move(settings)) {
+ClosedLoop::ClosedLoop(sim::Simulation& simulation, TargetSettings settings, ClosedLoopSettings own)
+    : TargetController(simulation, std::move(settings)), own_(std::move(own)) {
   const model::Model& model = simulation_.model();
-  check_feedback(model, settings_);
+  check_loop(model, settings_, own_);
   time_step_ = model.step().time_step;
   std::vector<double> weights;
   double longest = 0.0;
@@ -98,9 +102,8 @@ ClosedLoop::ClosedLoop(sim::Simulation& simulation, InverseSettings settings)
     for (int k = 0; k < model.effector(task.effector).row_count(); ++k) {
       weights.push_back(task.weight_by_priority(k));
     }
-    const sense::ChannelSettings& channel =
-        sense::sensors_of(model)[at(settings_.feedback->sensors[t])].channel;
-    longest = std::max(longest, channel.delay + settings_.feedback->timeout);
+    const sense::ChannelSettings& channel = sense::sensors_of(model)[at(own_.sensors[t])].channel;
+    longest = std::max(longest, channel.delay + own_.timeout);
   }
   weights_ = Eigen::Map<VectorX>(weights.data(), std::ssize(weights));
   integral_.setZero(weights_.size());
@@ -121,24 +124,14 @@ void ClosedLoop::detach() {
   attached_ = false;
 }
 
-VectorX ClosedLoop::efforts() const {
-  VectorX efforts(std::ssize(settings_.actuators));
-  for (Eigen::Index k = 0; k < efforts.size(); ++k) {
-    efforts[k] = simulation_.actuator(settings_.actuators[static_cast<std::size_t>(k)]).effort;
-  }
-  return efforts;
-}
-
 // Updates silent_; returns whether any sensor is silent now.
 bool ClosedLoop::note_silence() {
   const double now = simulation_.time();
   for (Eigen::Index t = 0; t < silent_.size(); ++t) {
     const sense::Channel& sensor =
-        sense::sensors_of(simulation_)
-            .channel(settings_.feedback->sensors[static_cast<std::size_t>(t)]);
+        sense::sensors_of(simulation_).channel(own_.sensors[static_cast<std::size_t>(t)]);
     const double age = now - sensor.time();
-    const double oldest =
-        sensor.settings().delay + settings_.feedback->timeout + sense::Channel::kSameTime;
+    const double oldest = sensor.settings().delay + own_.timeout + sense::Channel::kSameTime;
     const bool good = sensor.valid(now) && age <= oldest;
     silent_[t] = good ? 0.0 : sensor.has_value() ? age : kNever;
   }
@@ -171,8 +164,7 @@ VectorX ClosedLoop::along(int task, const Vector3& difference) const {
 }
 
 double ClosedLoop::measured_error(int task) const {
-  const sense::Channel& sensor =
-      sense::sensors_of(simulation_).channel(settings_.feedback->sensors[at(task)]);
+  const sense::Channel& sensor = sense::sensors_of(simulation_).channel(own_.sensors[at(task)]);
   if (!sensor.has_value()) return std::numeric_limits<double>::quiet_NaN();
   VectorX rows = along(task, difference(task, simulation_.time(), value_of(sensor)));
   for (Eigen::Index k = 0; k < rows.size(); ++k) {
@@ -188,8 +180,7 @@ VectorX ClosedLoop::error_now() const {
   const std::int64_t now = simulation_.steps(), kept = foreseen_.cols();
   for (std::size_t t = 0; t < settings_.tasks.size(); ++t) {
     const auto task = static_cast<int>(t);
-    const sense::Channel& sensor =
-        sense::sensors_of(simulation_).channel(settings_.feedback->sensors[t]);
+    const sense::Channel& sensor = sense::sensors_of(simulation_).channel(own_.sensors[t]);
     const VectorX rows = along(task, difference(task, simulation_.time(), value_of(sensor)));
     auto own = error.segment(first_[t], rows.size());
     own = rows;
@@ -243,7 +234,7 @@ void ClosedLoop::command() {
   const Eigen::Index slot = simulation_.steps() % foreseen_.cols();
   if (note_silence()) {
     foreseen_.col(slot).setZero();
-    status_ = InverseStatus::holding;
+    status_ = ControllerStatus::holding;
     return;
   }
   const sim::ControlledResponse response =
@@ -253,14 +244,12 @@ void ClosedLoop::command() {
     const MatrixX& own = response.effectors[at(settings_.tasks[t].effector)];
     w_ea.middleRows(first_[t], own.rows()) = own;
   }
-  const Feedback& feedback = *settings_.feedback;
   const VectorX error = error_now();
-  const VectorX wanted =
-      lead() + time_step_ * (feedback.gain * error + feedback.integral * integral_);
+  const VectorX wanted = lead() + time_step_ * (own_.gain * error + own_.integral * integral_);
   const RateChoice choice = choose_change(w_ea, response.actuators, wanted, weights_, limits());
   const VectorX moved = w_ea * choice.change;
-  if (feedback.integral > 0.0) {
-    integral_ += time_step_ * error - (wanted - moved) / feedback.gain;
+  if (own_.integral > 0.0) {
+    integral_ += time_step_ * error - (wanted - moved) / own_.gain;
   }
   foreseen_.col(slot) = moved;
   tell(choice.change, response.actuators);
@@ -270,7 +259,7 @@ void ClosedLoop::command() {
 // Its commands did not change, so it foresees no motion.
 void ClosedLoop::hold_back() {
   foreseen_.col((simulation_.steps() - 1) % foreseen_.cols()).setZero();
-  status_ = InverseStatus::held_back;
+  status_ = ControllerStatus::held_back;
 }
 
 void ClosedLoop::tell(const VectorX& change, const MatrixX& w_aa) {
@@ -301,25 +290,25 @@ void ClosedLoop::push_commands() {
   }
 }
 
-InverseStatus ClosedLoop::judge(const RateChoice& choice, const VectorX& wanted,
-                                const VectorX& moved) const {
-  if (choice.conflict) return InverseStatus::limits_conflict;
+ControllerStatus ClosedLoop::judge(const RateChoice& choice, const VectorX& wanted,
+                                   const VectorX& moved) const {
+  if (choice.conflict) return ControllerStatus::limits_conflict;
   bool reached = true;
   for (int t = 0; t < static_cast<int>(settings_.tasks.size()); ++t) {
     reached = reached && measured_error(t) <= settings_.tolerance;
   }
-  if (reached) return InverseStatus::on_target;
+  if (reached) return ControllerStatus::on_target;
   const VectorX root = weights_.cwiseSqrt();
   const double missed = root.cwiseProduct(wanted - moved).norm();
   const bool held_back = missed > kHeldBack * root.cwiseProduct(wanted).norm();
-  return choice.limited && held_back ? InverseStatus::at_limits : InverseStatus::moving;
+  return choice.limited && held_back ? ControllerStatus::at_limits : ControllerStatus::moving;
 }
 
 std::string ClosedLoop::conflict() const {
   std::string text;
   for (Eigen::Index t = 0; t < silent_.size(); ++t) {
     if (silent_[t] == 0.0) continue;
-    const int sensor = settings_.feedback->sensors[static_cast<std::size_t>(t)];
+    const int sensor = own_.sensors[static_cast<std::size_t>(t)];
     text += fmt::format("{}'{}' {}", text.empty() ? "" : ", ",
                         sense::sensors_of(simulation_.model())[at(sensor)].name,
                         silent_[t] == kNever ? std::string("has delivered nothing yet")
@@ -351,7 +340,7 @@ void ClosedLoop::save_memory(std::span<double> memory) const {
 
 void ClosedLoop::load_memory(std::span<const double> memory) {
   started_ = memory[0] != 0.0;
-  status_ = inverse_status_of(memory[1]);
+  status_ = controller_status_of(memory[1]);
   auto from = memory.begin() + 2;
   visit_memory(*this, [&](double& number) { number = *from++; });
   push_commands();
@@ -360,7 +349,7 @@ void ClosedLoop::load_memory(std::span<const double> memory) {
 // Commands stay: after a reset they are those of the scene again, otherwise they hold the robot.
 void ClosedLoop::forget() {
   started_ = false;
-  status_ = InverseStatus::not_started;
+  status_ = ControllerStatus::not_started;
   visit_memory(*this, [](double& number) { number = 0.0; });
 }
 

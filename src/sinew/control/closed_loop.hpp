@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sinew/control/closed_loop_settings.hpp"
 #include "sinew/control/rate_program.hpp"
 #include "sinew/control/target_controller.hpp"
 #include "sinew/core/types.hpp"
@@ -33,20 +34,27 @@ namespace sinew::control {
 /// (back-calculation).
 ///
 /// All commands and the integral are held (status `holding`) before the first sample, and while a
-/// sample is older than its sensor's delay plus Feedback::timeout, or than the sensor's own
-/// timeout.
+/// sample is older than its sensor's delay plus ClosedLoopSettings::timeout, or than the sensor's
+/// own timeout.
 class ClosedLoop : public TargetController, public run::Commander {
  public:
-  /// @param simulation must outlive the controller. @param settings with feedback.
-  /// Throws what check_settings() throws, and Error: wrong-length (sensors), wrong-type (a sensor
-  /// of another kind than its effector), out-of-range (gain, integral, timeout; a sensor whose
-  /// sampling period exceeds the timeout).
-  ClosedLoop(sim::Simulation& simulation, InverseSettings settings);
+  using Settings = ClosedLoopSettings;
+
+  /// @param simulation must outlive the controller. @param settings tasks and actuators.
+  /// @param own sensors and gains.
+  /// Throws what check_settings() throws, and Error: no-effectors, wrong-length (sensors),
+  /// wrong-type (a sensor of another kind than its effector), out-of-range (gain, integral,
+  /// timeout; a sensor whose sampling period exceeds the timeout).
+  ClosedLoop(sim::Simulation& simulation, TargetSettings settings, ClosedLoopSettings own);
   ~ClosedLoop() override;
 
   void detach() override;
-  /// Present efforts of the actuators.
-  VectorX efforts() const override;
+  ControllerSettings all_settings() const override {
+    return settings_for<ClosedLoop>(settings_, own_);
+  }
+  /// The settings that only a closed loop has.
+  const ClosedLoopSettings& own_settings() const { return own_; }
+  int sensor(int task) const override { return own_.sensors.at(static_cast<std::size_t>(task)); }
   double measured_error(int task) const override;
   std::string conflict() const override;
 
@@ -67,10 +75,12 @@ class ClosedLoop : public TargetController, public run::Commander {
   RateLimits limits() const;
   void tell(const VectorX& change, const MatrixX& w_aa);
   void push_commands();
-  InverseStatus judge(const RateChoice& choice, const VectorX& wanted, const VectorX& moved) const;
+  ControllerStatus judge(const RateChoice& choice, const VectorX& wanted,
+                         const VectorX& moved) const;
   template <class Self, class Visitor>
   static void visit_memory(Self& self, Visitor&& visitor);
 
+  ClosedLoopSettings own_;
   bool attached_ = false;
   double time_step_ = 0.0;           // s
   std::vector<Eigen::Index> first_;  // (tasks,) rows

@@ -81,6 +81,23 @@ void add_largest_error(sim::Observables& list, const AttachedController& control
            });
 }
 
+// Another controller of this name, such as one made after a reset, has the same observables.
+bool observes(const TargetController& controller, const std::vector<run::Observable>& own) {
+  return std::ranges::equal(controller.observables(), own, {}, &run::Observable::name,
+                            &run::Observable::name);
+}
+
+void add_own(sim::Observables& list, const AttachedController& controller) {
+  const TargetController* now = controller();
+  if (now == nullptr || now->observables().empty()) return;
+  const std::vector<run::Observable> own = now->observables();
+  list.add(own, [controller, own](std::span<double> to) {
+    const TargetController* present = controller();
+    if (present != nullptr && observes(*present, own)) return present->read(to);
+    std::ranges::fill(to, kNothing);
+  });
+}
+
 void add_status(sim::Observables& list, AttachedController controller) {
   run::Observable status{"controller",
                          "",
@@ -90,8 +107,8 @@ void add_status(sim::Observables& list, AttachedController controller) {
                          "controller",
                          {"controller"},
                          {{kNone, "none"}, {kStart, "start"}}};
-  for (int code = 0; code < kInverseStatuses; ++code) {
-    status.words.push_back({code, inverse_status_name(static_cast<InverseStatus>(code))});
+  for (int code = 0; code < kControllerStatuses; ++code) {
+    status.words.push_back({code, controller_status_name(static_cast<ControllerStatus>(code))});
   }
   const sim::Simulation& simulation = list.simulation();
   list.add({std::move(status)},
@@ -127,6 +144,7 @@ void add_controller(sim::Observables& list, AttachedController controller,
                     std::span<const int> effectors) {
   for (const int effector : effectors) add_effector(list, controller, effector);
   if (!effectors.empty()) add_largest_error(list, controller, effectors);
+  add_own(list, controller);
   add_status(list, std::move(controller));
 }
 

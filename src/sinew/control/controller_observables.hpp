@@ -27,9 +27,10 @@ std::vector<int> steered_effectors(const TargetController* controller);
 
 /// Adds to the list: for every effector, `NAME.target` (3,) and `NAME.error` in m or rad, NaN while
 /// it has no target; `error`, the largest error of all tasks in m, or in rad if all of them are
-/// orientations; and the status `controller` in words, "none" without a controller, "start" before
-/// the first step. @param list of the controller's simulation.
-/// @param controller called at every reading. @param effectors that may have a target.
+/// orientations; the observables of the controller's own, NaN while it is not attached; and the
+/// status `controller` in words, "none" without a controller, "start" before the first step.
+/// @param list of the controller's simulation.
+/// @param controller called now and at every reading. @param effectors that may have a target.
 void add_controller(sim::Observables& list, AttachedController controller,
                     std::span<const int> effectors);
 /// The same for a fixed controller and the effectors of its tasks.

@@ -38,10 +38,19 @@ bool near(double value, double limit) {
   return std::isfinite(limit) && std::abs(value - limit) <= kActive * (1.0 + std::abs(limit));
 }
 
+// Its own settings are checked before those of all controllers.
+TargetSettings checked(const model::Model& model, TargetSettings settings,
+                       const InverseSettings& own) {
+  check_settings(model, settings, own);
+  return settings;
+}
+
 }  // namespace
 
-InverseController::InverseController(sim::Simulation& simulation, InverseSettings settings)
-    : TargetController(simulation, std::move(settings)) {
+InverseController::InverseController(sim::Simulation& simulation, TargetSettings settings,
+                                     InverseSettings own)
+    : TargetController(simulation, checked(simulation.model(), std::move(settings), own)),
+      own_(std::move(own)) {
   const model::Model& model = simulation_.model();
   std::vector<double> weights;
   for (const EffectorTask& task : settings_.tasks) {
@@ -64,15 +73,15 @@ InverseController::InverseController(sim::Simulation& simulation, InverseSetting
   asked_.assign(settings_.tasks.size(), Vector3::Zero());
   const double largest = rows > 0 ? row_weights_.maxCoeff() : 0.0;
   program_ = EffortProgram(effector_rows_, row_weights_, static_cast<int>(count),
-                           ForceRows(settings_.contacts, largest > 0.0 ? largest : 1.0));
-  force_errors_.assign(settings_.contacts.size(), std::numeric_limits<double>::quiet_NaN());
+                           ForceRows(own_.contacts, largest > 0.0 ? largest : 1.0));
+  force_errors_.assign(own_.contacts.size(), std::numeric_limits<double>::quiet_NaN());
   efforts_.setZero(count);
   last_choice_.setZero(count);
   gap_linearised_.setZero(rows);
   change_.setZero(count);
   expected_.setZero(rows);
   std::vector<int> contacts;
-  for (const ContactTask& task : settings_.contacts) contacts.push_back(task.contact);
+  for (const ContactTask& task : own_.contacts) contacts.push_back(task.contact);
   simulation_.attach(*this, settings_.actuators, contacts);
   attached_ = true;
 }
@@ -84,7 +93,7 @@ void InverseController::detach() {
   attached_ = false;
 }
 
-InverseStatus InverseController::step() {
+ControllerStatus InverseController::step() {
   simulation_.step();
   return status_;
 }
@@ -114,7 +123,7 @@ void InverseController::look_back(const StepProblem& problem, const Response& re
     asked_[t] = target;
   }
   // A robot that was held back may be free to move elsewhere.
-  if (status_ == InverseStatus::held_back && farthest > kStill * settings_.tolerance) {
+  if (status_ == ControllerStatus::held_back && farthest > kStill * settings_.tolerance) {
     damping_.set(std::min(damping_.value(), kDistrusted));
   }
   for (int k = 0; k < failures_; ++k) damping_.reject();
@@ -203,10 +212,10 @@ void InverseController::form_residual(const StepProblem& problem, const Response
 void InverseController::begin_choices(const StepProblem& problem, const Response& response) {
   look_back(problem, response);
   form_residual(problem, response);
-  const bool change = settings_.regularisation == Regularisation::change;
+  const bool change = own_.regularisation == Regularisation::change;
   program_.begin(problem, response,
-                 {.epsilon = settings_.epsilon,
-                  .to_zero = change ? settings_.relaxation : 1.0,
+                 {.epsilon = own_.epsilon,
+                  .to_zero = change ? own_.relaxation : 1.0,
                   .damping = damping_.value(),
                   .damping_within = inner_damping_.value(),
                   .last_choice = last_choice_},
@@ -224,7 +233,7 @@ LawStatus InverseController::choose(const StepProblem& problem, const Response& 
 }
 
 double InverseController::largest_step(const StepProblem& problem) const {
-  return settings_.largest_step * problem.size;
+  return own_.largest_step * problem.size;
 }
 
 law::Controller::Merit InverseController::merit(const StepProblem& problem, const VectorX& motion,
@@ -259,7 +268,7 @@ void InverseController::accept(const StepProblem& problem, const Response& respo
   measure_forces(problem, motion, effort);
   const double moved = foresee(problem, response, motion);
   status_ = conflict().empty() ? judge(problem, response, motion, own, moved)
-                               : InverseStatus::limits_conflict;
+                               : ControllerStatus::limits_conflict;
 }
 
 void InverseController::measure_forces(const StepProblem& problem, const VectorX& motion,
@@ -271,7 +280,7 @@ void InverseController::measure_forces(const StepProblem& problem, const VectorX
 
 bool InverseController::forces_hold() const {
   for (std::size_t k = 0; k < force_errors_.size(); ++k) {
-    const ContactTask& task = settings_.contacts[k];
+    const ContactTask& task = own_.contacts[k];
     const double asked = task.normal_min > 0.0 ? task.normal_min : task.normal_max;
     if (std::isfinite(asked) && force_errors_[k] > kForceTolerance * asked) return false;
     if (!std::isfinite(asked) && force_errors_[k] > 0.0) return false;
@@ -300,25 +309,26 @@ double InverseController::foresee(const StepProblem& problem, const Response& re
   return moved;
 }
 
-InverseStatus InverseController::judge(const StepProblem& problem, const Response& response,
-                                       const VectorX& motion, std::span<const double> effort,
-                                       double moved) const {
+ControllerStatus InverseController::judge(const StepProblem& problem, const Response& response,
+                                          const VectorX& motion, std::span<const double> effort,
+                                          double moved) const {
   if (predicted_error_ <= settings_.tolerance && forces_hold()) {
-    return surprise_ <= settings_.tolerance ? InverseStatus::on_target : InverseStatus::moving;
+    return surprise_ <= settings_.tolerance ? ControllerStatus::on_target
+                                            : ControllerStatus::moving;
   }
-  if (rate_binds(problem, response, motion, effort)) return InverseStatus::rate_limited;
+  if (rate_binds(problem, response, motion, effort)) return ControllerStatus::rate_limited;
   const double still = kStill * settings_.tolerance;
   const bool sound =
       surprise_ <= settings_.tolerance && simulation_.report().relative_residual <= kBalanced;
-  if (!sound) return InverseStatus::moving;
+  if (!sound) return ControllerStatus::moving;
   // Without damping, the step would have gone farther by this factor. Where the robot is about to
   // buckle, the linearisation predicts motions that steps cannot make.
   if (moved * damping_.value() > still) {
     const bool held = damping_.value() >= kDistrusted && came_ <= still;
-    return held ? InverseStatus::held_back : InverseStatus::moving;
+    return held ? ControllerStatus::held_back : ControllerStatus::moving;
   }
-  return program_.limit_holds(foreseen_.norm()) ? InverseStatus::out_of_reach
-                                                : InverseStatus::local_optimum;
+  return program_.limit_holds(foreseen_.norm()) ? ControllerStatus::out_of_reach
+                                                : ControllerStatus::local_optimum;
 }
 
 bool InverseController::rate_binds(const StepProblem& problem, const Response& response,
@@ -339,7 +349,7 @@ bool InverseController::rate_binds(const StepProblem& problem, const Response& r
 
 void InverseController::hold_back(int failures) {
   for (int k = 0; k < failures; ++k) damping_.reject();
-  status_ = InverseStatus::held_back;
+  status_ = ControllerStatus::held_back;
   for (std::size_t k = 0; k < settings_.actuators.size(); ++k) {
     efforts_[static_cast<Eigen::Index>(k)] = simulation_.actuator(settings_.actuators[k]).effort;
   }

@@ -11,9 +11,11 @@
 #include <vector>
 
 #include "sinew/control/effort_program.hpp"
+#include "sinew/control/inverse_settings.hpp"
 #include "sinew/control/step_damping.hpp"
 #include "sinew/control/target_controller.hpp"
 #include "sinew/core/types.hpp"
+#include "sinew/law/certificate.hpp"
 #include "sinew/law/controller.hpp"
 
 namespace sinew::control {
@@ -32,23 +34,35 @@ namespace sinew::control {
 /// laws.
 class InverseController : public TargetController, public law::Controller {
  public:
-  /// @param simulation must outlive the controller. @param settings tasks and options.
+  using Settings = InverseSettings;
+
+  /// @param simulation must outlive the controller. @param settings tasks and actuators.
+  /// @param own contacts and options.
   /// Throws Error: no-effectors, no-actuators, actuator-owned, wrong-length (weights),
-  /// out-of-range, suspicious-unit.
-  InverseController(sim::Simulation& simulation, InverseSettings settings);
+  /// out-of-range, duplicate-key (a contact twice), suspicious-unit.
+  InverseController(sim::Simulation& simulation, TargetSettings settings, InverseSettings own = {});
   ~InverseController() override;
 
   /// Solves and advances the simulation by one step.
-  InverseStatus step();
+  ControllerStatus step();
   void detach() override;
+  ControllerSettings all_settings() const override {
+    return settings_for<InverseController>(settings_, own_);
+  }
 
+  /// The settings that only an inverse controller has.
+  const InverseSettings& own_settings() const { return own_; }
   /// The efforts that it chose last.
   VectorX efforts() const override { return efforts_; }
-  double force_error(int task) const override {
-    return force_errors_.at(static_cast<std::size_t>(task));
-  }
-  const std::optional<law::Certificate>& certificate() const override { return certificate_; }
-  double predicted_error() const override { return predicted_error_; }
+  /// Violation of the requirement on a contact's forces, N, by the linearisation of the last step;
+  /// NaN before the first step. @param task index in own_settings().contacts.
+  double force_error(int task) const { return force_errors_.at(static_cast<std::size_t>(task)); }
+  /// Certificate of the last step's linearisation, if own_settings().certify; none before the first
+  /// step.
+  const std::optional<law::Certificate>& certificate() const { return certificate_; }
+  /// Error that remains by the linearisation of the last step, m or rad, over all tasks; NaN before
+  /// the first step.
+  double predicted_error() const { return predicted_error_; }
   std::string conflict() const override { return program_.conflict(); }
 
   void begin_choices(const law::StepProblem& problem, const law::Response& response) override;
@@ -63,7 +77,7 @@ class InverseController : public TargetController, public law::Controller {
   double negligible_gain() const override { return negligible_objective(); }
   void accept(const law::StepProblem& problem, const law::Response& response, const VectorX& motion,
               std::span<const double> own, std::span<const double> effort) override;
-  bool certifies() const override { return settings_.certify; }
+  bool certifies() const override { return own_.certify; }
   void take_certificate(const law::Certificate& certificate) override {
     certificate_ = certificate;
   }
@@ -92,9 +106,10 @@ class InverseController : public TargetController, public law::Controller {
                       std::span<const double> effort);
   bool forces_hold() const;
   double largest_step(const law::StepProblem& problem) const;
-  InverseStatus judge(const law::StepProblem& problem, const law::Response& response,
-                      const VectorX& motion, std::span<const double> effort, double moved) const;
+  ControllerStatus judge(const law::StepProblem& problem, const law::Response& response,
+                         const VectorX& motion, std::span<const double> effort, double moved) const;
 
+  InverseSettings own_;
   bool attached_ = false;
 
   std::vector<int> effector_rows_;  // rows of H, task by task

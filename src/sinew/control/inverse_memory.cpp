@@ -35,7 +35,7 @@ void InverseController::forget() {
   time_ = -std::numeric_limits<double>::infinity();
   surprise_ = came_ = std::numeric_limits<double>::infinity();
   predicted_error_ = std::numeric_limits<double>::quiet_NaN();
-  status_ = InverseStatus::not_started;
+  status_ = ControllerStatus::not_started;
   visit_memory(*this, [](double& number) { number = 0.0; });
 }
 
@@ -67,7 +67,7 @@ void InverseController::load_memory(std::span<const double> memory) {
   }
   if (memory[0] >= 2.0) surprise_ = memory[2];
   damping_.set(memory[4]);
-  status_ = inverse_status_of(memory[5]);
+  status_ = controller_status_of(memory[5]);
   program_.set_largest_asked(memory[6]);
   auto from = memory.begin() + kKnown;
   visit_memory(*this, [&](double& number) { number = *from++; });

@@ -5,20 +5,12 @@
 #include <utility>
 
 #include "sinew/constraint/effector.hpp"
-#include "sinew/control/closed_loop.hpp"
-#include "sinew/control/inverse_controller.hpp"
 #include "sinew/model/model.hpp"
 #include "sinew/sim/simulation.hpp"
 
 namespace sinew::control {
 
-namespace {
-
-constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
-
-TargetController::TargetController(sim::Simulation& simulation, InverseSettings settings)
+TargetController::TargetController(sim::Simulation& simulation, TargetSettings settings)
     : simulation_(simulation), settings_(std::move(settings)) {
   check_settings(simulation_, settings_);
 }
@@ -26,6 +18,14 @@ TargetController::TargetController(sim::Simulation& simulation, InverseSettings 
 void TargetController::set_target(int task, Target target) {
   check_target(simulation_, settings_.tasks.at(static_cast<std::size_t>(task)).effector, target);
   settings_.tasks.at(static_cast<std::size_t>(task)).target = std::move(target);
+}
+
+VectorX TargetController::efforts() const {
+  VectorX efforts(std::ssize(settings_.actuators));
+  for (Eigen::Index k = 0; k < efforts.size(); ++k) {
+    efforts[k] = simulation_.actuator(settings_.actuators[static_cast<std::size_t>(k)]).effort;
+  }
+  return efforts;
 }
 
 // Evaluates the present configuration, which may be a restored one whose rows no step has formed
@@ -51,20 +51,20 @@ double TargetController::error() const {
   return worst;
 }
 
-double TargetController::measured_error(int) const { return kNothing; }
-double TargetController::force_error(int) const { return kNothing; }
-double TargetController::predicted_error() const { return kNothing; }
+int TargetController::sensor(int) const { return -1; }
+double TargetController::measured_error(int) const {
+  return std::numeric_limits<double>::quiet_NaN();
+}
 std::string TargetController::conflict() const { return {}; }
 
-const std::optional<law::Certificate>& TargetController::certificate() const {
-  static const std::optional<law::Certificate> none;
+const std::vector<run::Observable>& TargetController::observables() const {
+  static const std::vector<run::Observable> none;
   return none;
 }
 
 std::unique_ptr<TargetController> make_controller(sim::Simulation& simulation,
-                                                  InverseSettings settings) {
-  if (settings.feedback) return std::make_unique<ClosedLoop>(simulation, std::move(settings));
-  return std::make_unique<InverseController>(simulation, std::move(settings));
+                                                  const ControllerSettings& settings) {
+  return settings.make(simulation, settings.targets);
 }
 
 }  // namespace sinew::control

@@ -7,10 +7,10 @@
 namespace sinew {
 
 std::string_view notice_kind_name(NoticeKind kind) {
-  constexpr std::array<std::string_view, 11> kNames = {
+  constexpr std::array<std::string_view, 12> kNames = {
       "locking-element", "bare-points",  "unused-element",  "coarse-contact",
       "other-tangent",   "loose-part",   "suspicious-unit", "slack-cable",
-      "bowstring",       "unstable-law", "strain-range"};
+      "bowstring",       "unstable-law", "strain-range",    "renamed-word"};
   return kNames.at(static_cast<std::size_t>(kind));
 }
 

@@ -22,6 +22,7 @@ enum class NoticeKind {
   bowstring,        ///< a cable ran straight between two points of a body that bent
   unstable_law,     ///< a material loses its stability at strains of robots
   strain_range,     ///< the strains of a run are not those at which its material was tested
+  renamed_word,     ///< a key of the scene has another name now
 };
 
 /// Where a notice is shown.

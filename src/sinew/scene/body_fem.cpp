@@ -138,7 +138,7 @@ fem::FemBodySettings fem_settings(const SceneDescription& scene, const BodyDescr
     if (mass.body != body.name) continue;
     settings.masses.push_back({mass.name, mass.place, mass.point, mass.mass, mass.outside});
   }
-  if (const auto& start = body.initial_velocity) {
+  if (const auto& start = body.velocity) {
     settings.initial_velocity = {start->linear, start->angular};
   }
   settings.elements.regions = regions_of(body, *settings.mesh);

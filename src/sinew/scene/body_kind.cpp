@@ -56,10 +56,10 @@ void add_body(builder::ModelBuilder& builder, const SceneDescription& scene,
               const BodyDescription& body, const SharedMesh* shared) {
   try {
     const int number = builder.add_body(body.kind->make({scene, body, shared}), body.place);
-    if (!body.base) return;
-    model::BaseMotion motion = *body.base;
+    if (!body.motion) return;
+    model::BaseMotion motion = *body.motion;
     motion.body = number;
-    builder.add_base_motion(motion, body.base_place);
+    builder.add_base_motion(motion, body.motion_place);
   } catch (const Error& error) {
     throw error.at(body.place);
   }

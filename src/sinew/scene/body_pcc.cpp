@@ -95,22 +95,11 @@ std::shared_ptr<const KeyTable> pcc_table() {
                           .default_text = "20 mm",
                           .description = "Display radius, and the largest distance of cable and "
                                          "effector points from the axis."},
-                         {.name = "position",
-                          .forms = {vector(length())},
-                          .example = "0 0 0.5 m",
-                          .default_text = "0 0 0 m",
-                          .description = "Position of the base."},
-                         {.name = "direction",
-                          .forms = {vector(plain_number())},
-                          .example = "0 0 1",
-                          .default_text = "0 0 -1",
-                          .description = "Direction of the arm at rest."},
-                         {.name = "side",
-                          .forms = {vector(plain_number())},
-                          .example = "0 1 0",
-                          .default_text = "1 0 0",
-                          .description = "Direction of bending for positive angles; only the "
-                                         "component normal to the arm's direction counts."},
+                         {.name = "pose",
+                          .forms = {table(arm_pose_table())},
+                          .example = "{position: 0 0 0.5 m, direction: 0 0 1}",
+                          .default_text = "{}",
+                          .description = "Position of the base, and direction of the arm."},
                      }});
 }
 
@@ -139,6 +128,31 @@ pcc::Segment read_segment(const Fields& fields) {
   return segment;
 }
 
+// The frame of an arm in its pose. @param hanging the frame without a rotation.
+Matrix3 read_frame(const Fields& pose, const Matrix3& hanging) {
+  Vector3 direction = hanging.col(2), side = hanging.col(0);
+  const bool given = pose.read_direction("side", side);
+  if (pose.find("rotation") != nullptr) {
+    if (!given) return read_rotation(pose) * hanging;
+    throw Error(ErrorKind::conflicting_keys, pose.place("side"),
+                "'rotation' and 'side' exclude each other", "keep one of the two");
+  }
+  pose.read_direction("direction", direction);
+  Vector3 across = direction.cross(side);
+  if (!(across.norm() > 1e-6)) {
+    if (given) {
+      throw Error(ErrorKind::out_of_range, pose.place("side"),
+                  "side points along the arm's own direction",
+                  "give one across: towards it, positive angles bend");
+    }
+    across = direction.cross(Vector3::UnitY());
+  }
+  across.normalize();
+  Matrix3 frame;
+  frame << across.cross(direction), across, direction;
+  return frame;
+}
+
 pcc::ArmSettings read_arm(const Fields& fields, const std::string& name) {
   pcc::ArmSettings arm;
   arm.name = name;
@@ -147,21 +161,9 @@ pcc::ArmSettings read_arm(const Fields& fields, const std::string& name) {
                       {"chord", pcc::MassCentre::chord},
                       {"distributed", pcc::MassCentre::distributed}});
   fields.read("radius", arm.radius);
-  fields.read("position", arm.base);
-  Vector3 direction = arm.frame.col(2), side = arm.frame.col(0);
-  fields.read_direction("direction", direction);
-  const bool given = fields.read_direction("side", side);
-  Vector3 across = direction.cross(side);
-  if (!(across.norm() > 1e-6)) {
-    if (given) {
-      throw Error(ErrorKind::out_of_range, fields.place("side"),
-                  "side points along the arm's own direction",
-                  "give one across: towards it, positive angles bend");
-    }
-    across = direction.cross(Vector3::UnitY());
-  }
-  across.normalize();
-  arm.frame << across.cross(direction), across, direction;
+  const Fields pose = fields.below("pose");
+  pose.read("position", arm.base);
+  arm.frame = read_frame(pose, arm.frame);
   for (const Node& item : fields.find("segments")->items()) {
     arm.segments.push_back(
         read_segment(Fields(item, select_form(item, fields.form("segments").items, {}))));

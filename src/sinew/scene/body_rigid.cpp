@@ -69,8 +69,8 @@ void read_rigid_body(const Fields& fields, const ReadContext& context, BodyDescr
   if (fields.find("motion") != nullptr) {
     refuse_free(fields);
     settings.fixed = true;
-    body.base = read_motion(fields.below("motion"), context);
-    body.base_place = fields.place("motion");
+    body.motion = read_motion(fields.below("motion"), context);
+    body.motion_place = fields.place("motion");
   }
   body.own = std::move(settings);
 }
@@ -100,19 +100,22 @@ void refuse_free(const Fields& fields) {
               "the body has a motion, which says how fast it is", "leave `velocity` out");
 }
 
-Matrix3 read_rotation(const Fields& pose) {
+Vector3 read_rotation_vector(const Fields& pose) {
   Vector3 turn = Vector3::Zero();
-  if (pose.find("rotation") == nullptr) return Matrix3::Identity();
+  if (pose.find("rotation") == nullptr) return turn;
   if (pose.form("rotation").shape == Shape::quantity) {
     pose.read("rotation", turn);
-    return rotation_matrix(turn);
+    return turn;
   }
   const Fields rotation = pose.below("rotation");
   double angle = 0.0;
-  Vector3 axis = Vector3::UnitZ();
   rotation.read("angle", angle);
-  axis = read_axis(*rotation.find("axis"), rotation.table().find("axis")->forms);
-  return rotation_matrix(angle * axis);
+  return angle * read_axis(*rotation.find("axis"), rotation.table().find("axis")->forms);
+}
+
+Matrix3 read_rotation(const Fields& pose) {
+  if (pose.find("rotation") == nullptr) return Matrix3::Identity();
+  return rotation_matrix(read_rotation_vector(pose));
 }
 
 bool is_plane(const Node::Entry& body) {

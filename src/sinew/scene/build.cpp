@@ -13,6 +13,7 @@
 #include "sinew/scene/actuator_kind.hpp"
 #include "sinew/scene/body_kind.hpp"
 #include "sinew/scene/build_parts.hpp"
+#include "sinew/scene/controller_kind.hpp"
 #include "sinew/scene/joint_kind.hpp"
 #include "sinew/scene/scene.hpp"
 #include "sinew/scene/sensor_kind.hpp"
@@ -22,33 +23,16 @@ namespace sinew::scene {
 
 namespace {
 
-// Error below which an effector of a closed loop counts as on target, m or rad.
-constexpr double kMeasuredTolerance = 5e-4;
-
 SceneController controller_of(const ControllerDescription& description, const model::Model& model) {
-  SceneController controller{description.name, {}};
-  auto& settings = controller.settings;
+  control::TargetSettings targets;
   for (const TaskDescription& task : description.tasks) {
-    settings.tasks.push_back(
+    targets.tasks.push_back(
         {model.effector_index(task.effector), task.target, task.weights, task.priority});
   }
-  for (const ContactTaskDescription& task : description.contacts) {
-    settings.contacts.push_back(task.asked);
-    settings.contacts.back().contact = model.contact_index(task.contact);
-  }
   for (const std::string& name : description.actuators) {
-    settings.actuators.push_back(model.actuator_index(name));
+    targets.actuators.push_back(model.actuator_index(name));
   }
-  if (description.feedback) {
-    settings.tolerance = kMeasuredTolerance;
-    settings.feedback = description.feedback;
-    for (const std::string& name : description.sensors) {
-      settings.feedback->sensors.push_back(sense::sensor_index(model, name));
-    }
-  }
-  settings.regularisation = description.regularisation;
-  if (description.epsilon) settings.epsilon = *description.epsilon;
-  return controller;
+  return {description.name, description.kind->build({description, model, std::move(targets)})};
 }
 
 model::StepSettings step_settings(const SceneDescription& scene) {
@@ -185,9 +169,8 @@ Robot build(SceneDescription description, const SharedMeshes& shared) {
 
 Robot load(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
   if (overrides.empty()) return build(parse_scene(path));
-  Node tree = read_yaml(path);
-  for (const std::string& assignment : overrides) apply_override(tree, assignment);
-  SceneDescription description = parse_scene_tree(std::move(tree), path.parent_path());
+  SceneDescription description =
+      parse_changed_scene(read_yaml(path), overrides, path.parent_path());
   description.name = path.stem().string();
   return build(std::move(description));
 }

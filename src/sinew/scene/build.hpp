@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sinew/control/inverse_settings.hpp"
+#include "sinew/control/target_controller.hpp"
 #include "sinew/core/error.hpp"
 #include "sinew/core/notice.hpp"
 #include "sinew/mesh/mesh.hpp"
@@ -19,7 +19,7 @@ namespace sinew::scene {
 /// A controller, ready to be attached to a simulation of the scene's model.
 struct SceneController {
   std::string name;
-  control::InverseSettings settings;
+  control::ControllerSettings settings;
 };
 
 /// A scene that is ready to run. Any number of simulations may share `model`.

@@ -78,7 +78,7 @@ bool has_inertia(const SceneDescription& scene, const EstimatorDescription& esti
 void take_inertia(SceneDescription& known) {
   known.integrator = Integrator::quasi_static;
   known.restitution = 0.0;
-  for (BodyDescription& body : known.bodies) body.initial_velocity.reset();
+  for (BodyDescription& body : known.bodies) body.velocity.reset();
   for (ContactDescription& contact : known.contacts) contact.restitution.reset();
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 
 #include <fmt/format.h>
@@ -244,10 +245,12 @@ const KeyTable& table_of(const Node& map, const Form& form) {
 
 void throw_unknown_key(const std::string& key, const KeyTable& table, const Location& place) {
   const std::vector<std::string> known = table.key_names();
-  if (const auto word = current_word(key, known)) {
+  std::optional<std::string> now = current_word(key, known);
+  if (const std::string_view path = moved_key(key, table); !path.empty()) now = written(path);
+  if (now) {
     throw Error(ErrorKind::unknown_key, place,
                 fmt::format("{} in {} has another name now", show(key), table.name),
-                fmt::format("write {}", *word));
+                fmt::format("write {}", *now));
   }
   throw Error(ErrorKind::unknown_key, place,
               fmt::format("unknown key {} in {}", show(key), table.name),

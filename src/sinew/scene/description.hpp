@@ -22,6 +22,7 @@
 #include "sinew/builder/spring_line_settings.hpp"
 #include "sinew/builder/torque_settings.hpp"
 #include "sinew/constraint/smooth_surface.hpp"
+#include "sinew/control/closed_loop_settings.hpp"
 #include "sinew/control/inverse_settings.hpp"
 #include "sinew/control/target.hpp"
 #include "sinew/core/error.hpp"
@@ -43,7 +44,6 @@
 
 namespace sinew::scene {
 
-using control::Regularisation;
 using fem::MassMatrix;
 using mechanics::Integrator;
 using mechanics::Tangent;
@@ -51,6 +51,7 @@ using model::Equilibrium;
 using model::Method;
 struct ActuatorKind;
 struct BodyKind;
+struct ControllerKind;
 struct JointKind;
 struct LoadKind;
 struct ProbeKind;
@@ -171,7 +172,7 @@ struct BodyDescription : OwnSettings {
   Location place;
   const BodyKind* kind = nullptr;  ///< never null in a scene that was read
   // `own` has UrdfDescription, pcc::ArmSettings or rigid::RigidSettings. It is empty for type fem,
-  // whose settings are the members below. Of those, rigid bodies use mesh, convex and base.
+  // whose settings are the members below. Of those, rigid bodies use mesh, convex and motion.
   bool convex = false;  ///< rigid with a mesh: contacts use its hull
   MeshDescription mesh;
   Vector3 position = Vector3::Zero();  ///< m, of the origin of the mesh
@@ -188,9 +189,10 @@ struct BodyDescription : OwnSettings {
   double mass_damping = 0.0;       ///< 1/s, Rayleigh: damping matrix = mass_damping M + ...
   double stiffness_damping = 0.0;  ///< s, ... + stiffness_damping K
   std::vector<FixedRegion> fixed;
-  std::optional<model::BaseMotion> base;  ///< of the fixed nodes; its body number is set later
-  Location base_place;
-  std::optional<InitialVelocityDescription> initial_velocity;
+  /// Of the fixed nodes, or of a rigid body; its body number is set later.
+  std::optional<model::BaseMotion> motion;
+  Location motion_place;
+  std::optional<InitialVelocityDescription> velocity;
 };
 
 /// Points, each with the location where it was written (a line of the scene or of a CSV file).
@@ -429,17 +431,25 @@ struct ContactTaskDescription {
   control::ContactTask asked;  ///< its contact number is set later
 };
 
-struct ControllerDescription {
+/// An inverse controller. Its contacts are given by name and not yet by number.
+struct InverseDescription {
+  control::InverseSettings settings;
+  std::vector<ContactTaskDescription> contacts;
+};
+
+/// A closed loop. Its sensors are given by name and not yet by number.
+struct ClosedLoopDescription {
+  control::ClosedLoopSettings settings;
+  std::vector<std::string> sensors;  ///< (tasks,) sensor of each task
+};
+
+struct ControllerDescription : OwnSettings {
   std::string name;
   Location place;
-  std::optional<control::Feedback> feedback;  ///< of a closed loop; sensor numbers are set later
-  std::vector<std::string> sensors;           ///< (tasks,) of a closed loop: sensor of each task
-  std::vector<std::string> actuators;         ///< empty: all
+  const ControllerKind* kind = nullptr;  ///< never null in a scene that was read
+  std::vector<std::string> actuators;    ///< empty: all
   std::vector<Location> actuator_places;
   std::vector<TaskDescription> tasks;
-  std::vector<ContactTaskDescription> contacts;
-  Regularisation regularisation = Regularisation::change;
-  std::optional<double> epsilon;  ///< relative weight of the regularisation; none: the default
 };
 
 struct RecordDescription {

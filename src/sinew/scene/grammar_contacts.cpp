@@ -150,10 +150,9 @@ Form contact_form() {
                       "Default: every point acts by itself."});
   contact.keys.push_back(
       {.name = "motion",
-       .forms = {table(make_table({.name = "motion of a surface",
-                                   .description = "Motion of the surface from its declared pose: a "
-                                                  "rotation about an axis, then a translation.",
-                                   .keys = motion_keys()}))},
+       .forms = {table(motion_table("motion of a surface",
+                                    "Motion of the surface from its declared pose: a rotation "
+                                    "about an axis, then a translation."))},
        .example = "{z: {ramp: {to: -4 mm, duration: 1 s}}}",
        .description = "Motion of the surface. Default: at rest."});
   return table(make_table(std::move(contact)));

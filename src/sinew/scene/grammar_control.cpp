@@ -1,4 +1,4 @@
-// The tables of signals, targets and controllers.
+// The tables of signals and targets, and the keys that all controllers have.
 #include "sinew/scene/grammar_forms.hpp"
 
 namespace sinew::scene::forms {
@@ -193,106 +193,6 @@ Form task_form() {
        .alternatives = {{{"target", "rotation"}, true}}}));
 }
 
-std::shared_ptr<const KeyTable> normal_force_table() {
-  return make_table(
-      {.name = "normal force of a contact",
-       .description = "Limits of the sum of the normal forces at the contact's points.",
-       .keys = {{.name = "min",
-                 .forms = {quantity(force(), non_negative())},
-                 .example = "1 N",
-                 .default_text = "0 N",
-                 .description = "Smallest normal force."},
-                {.name = "max",
-                 .forms = {quantity(force(), positive())},
-                 .example = "3 N",
-                 .description = "Largest normal force. Default: no limit."}}});
-}
-
-Form contact_task_form() {
-  return table(make_table(
-      {.name = "contact goal",
-       .description =
-           "Goals for the resultant force of one contact. They have priority over targets.",
-       .keys = {{.name = "normal_force",
-                 .forms = {quantity(force(), positive()), table(normal_force_table())},
-                 .example = "{min: 1 N, max: 3 N}",
-                 .description = "The normal force, or its limits."},
-                {.name = "slip",
-                 .forms = {boolean()},
-                 .example = "false",
-                 .default_text = "true",
-                 .description = "Whether the contact may slip. If false, the controller keeps the "
-                                "resultant inside the friction cone."},
-                {.name = "reserve",
-                 .forms = {quantity(plain_number(), non_negative())},
-                 .example = "0.2",
-                 .default_text = "0",
-                 .description = "Fraction of the friction cone to keep in reserve: |F_t| <= (1 - "
-                                "reserve) mu F_n. Less than 1."}}}));
-}
-
-std::shared_ptr<const KeyTable> regularisation_table() {
-  return make_table(
-      {.name = "regularisation",
-       .description = "Choice among efforts that serve the targets equally well.",
-       .keys = {
-           {.name = "of",
-            .forms = {choice({{"change", "The change from the last efforts; no bias at rest."},
-                              {"effort", "The efforts; biases the effector."}})},
-            .example = "change",
-            .default_text = "change",
-            .description = "Quantity to minimise."},
-           {.name = "epsilon",
-            .forms = {quantity(plain_number(), positive())},
-            .example = "1e-5",
-            .description =
-                "Its weight relative to the tracking error. Default: chosen by the controller."}}});
-}
-
-Key driven_key() {
-  return {.name = "actuators",
-          .forms = {list({reference("actuators")})},
-          .example = "[long_0, long_1]",
-          .description = "The actuators it drives. Default: all."};
-}
-
-std::shared_ptr<const KeyTable> closed_loop_table() {
-  return make_table(
-      {.name = "controller: type closed-loop",
-       .description =
-           "Feedback on effectors that sensors measure: before each step, it commands motions of "
-           "actuators, and pressures of chambers, that move the effectors to their targets.",
-       .keys = {{.name = "effectors",
-                 .forms = {names(task_form(), 1, "effectors")},
-                 .example = "{tip: {target: 0 0 190 mm}}",
-                 .description = "Target of each effector, by name.",
-                 .required = true},
-                {.name = "sensors",
-                 .forms = {list({reference("sensors")})},
-                 .example = "[tip]",
-                 .description = "Sensors that measure the effectors: for each effector, a marker "
-                                "at its point or an orientation at its points.",
-                 .required = true},
-                driven_key(),
-                {.name = "gain",
-                 .forms = {quantity(frequency(), positive())},
-                 .example = "8 1/s",
-                 .default_text = "5 1/s",
-                 .description = "Velocity per error: an error decays as exp(-gain t)."},
-                {.name = "integral",
-                 .forms = {quantity(integral_gain(), non_negative())},
-                 .example = "4 1/s^2",
-                 .default_text = "0 1/s^2",
-                 .description =
-                     "Velocity per time integral of the error; gain^2/4 gives critical damping."},
-                {.name = "timeout",
-                 .forms = {quantity(time(), positive())},
-                 .example = "50 ms",
-                 .default_text = "100 ms",
-                 .description = "All commands are held while the last sample of a sensor is older "
-                                "than the sensor's delay plus this time."}}});
-}
-
 }  // namespace
 
 std::shared_ptr<const KeyTable> signal_table(const Measure& measure, const char* value_example) {
@@ -333,31 +233,19 @@ std::shared_ptr<const KeyTable> signal_table(const Measure& measure, const char*
   return make_table(std::move(signal));
 }
 
-Form controller_form() {
-  const auto inverse =
-      make_table({.name = "controller: type inverse",
-                  .description = "Inverse control: computes in each step the efforts that move the "
-                                 "effectors to their targets.",
-                  .keys = {{.name = "effectors",
-                            .forms = {names(task_form(), 1, "effectors")},
-                            .example = "{tip: {target: 0 0 190 mm}}",
-                            .description = "Target of each effector, by name."},
-                           {.name = "contacts",
-                            .forms = {names(contact_task_form(), 1, "contacts")},
-                            .example = "{grip: {normal_force: {min: 1 N, max: 3 N}}}",
-                            .description = "Goals for contact forces, by name of the contact."},
-                           driven_key(),
-                           {.name = "regularisation",
-                            .forms = {table(regularisation_table())},
-                            .example = "{of: change}",
-                            .default_text = "{}",
-                            .description = "Choice among equivalent efforts."}}});
-  return variants(
-      "type", {{.word = "inverse", .description = "One-step inverse control.", .table = inverse},
-               {.word = "closed-loop",
-                .description = "Feedback on measured effectors.",
-                .table = closed_loop_table()},
-               {.word = "policy", .description = "A learnt policy.", .later = true}});
+Key tasks_key(bool required) {
+  return {.name = "effectors",
+          .forms = {names(task_form(), 1, "effectors")},
+          .example = "{tip: {target: 0 0 190 mm}}",
+          .description = "Target of each effector, by name.",
+          .required = required};
+}
+
+Key driven_key() {
+  return {.name = "actuators",
+          .forms = {list({reference("actuators")})},
+          .example = "[long_0, long_1]",
+          .description = "The actuators it drives. Default: all."};
 }
 
 }  // namespace sinew::scene::forms

@@ -126,6 +126,10 @@ DriveWords line_words(const model::ActuatorKind& kind, Range range, const char* 
 Key input_key(const char* name, const Measure& measure, const char* example,
               const char* description, Range range = any());
 Key body_key();
+/// Key `effectors` of a controller: the target of each. @param required whether it needs one.
+Key tasks_key(bool required);
+/// Key `actuators` of a controller: those that it drives.
+Key driven_key();
 /// A length of a shape, positive and required.
 Key shape_length(const char* name, const char* example, const char* description);
 /// Keys point, points and set, which give a location on a body.
@@ -143,14 +147,19 @@ std::vector<Form> axis_forms();
 std::vector<Key> region_keys(const char* whose);
 /// A table of the region keys.
 std::shared_ptr<const KeyTable> region_table(const char* name, const char* description);
-/// Keys x, y, z, angle, axis and centre of a prescribed motion.
-std::vector<Key> motion_keys();
+/// A table of a prescribed motion, with keys x, y, z, angle, axis and centre.
+/// @param name,description of the table.
+std::shared_ptr<const KeyTable> motion_table(const char* name, const char* description);
+/// Form of the prescribed motion of a body.
+Form body_motion_form();
 
 // Tables and forms of each part of a scene, defined in the file of that part.
 std::shared_ptr<const KeyTable> surface_table();
 std::shared_ptr<const KeyTable> fem_table();
 std::shared_ptr<const KeyTable> rigid_table();
 std::shared_ptr<const KeyTable> pose_table();
+std::shared_ptr<const KeyTable> arm_pose_table();
+std::shared_ptr<const KeyTable> velocity_table();
 std::shared_ptr<const KeyTable> signal_table(const Measure& measure, const char* value_example);
 std::shared_ptr<const KeyTable> point_file_table();
 std::shared_ptr<const KeyTable> body_point_table();

@@ -1,4 +1,4 @@
-// The tables of rigid bodies and of poses.
+// The tables of rigid bodies.
 #include "sinew/scene/grammar_forms.hpp"
 
 namespace sinew::scene::forms {
@@ -60,53 +60,7 @@ std::shared_ptr<const KeyTable> solid_table() {
                                 "always use the surface."}}});
 }
 
-std::shared_ptr<const KeyTable> velocity_table() {
-  return make_table({.name = "velocity",
-                     .description = "Motion of a rigid body at the start.",
-                     .keys = {{.name = "linear",
-                               .forms = {vector(speed())},
-                               .example = "0 0 -1 m/s",
-                               .default_text = "0 0 0 m/s",
-                               .description = "Velocity of the centre of mass."},
-                              {.name = "angular",
-                               .forms = {vector(angular_speed())},
-                               .example = "0 0 20 rad/s",
-                               .default_text = "0 0 0 rad/s",
-                               .description = "Angular velocity in world axes."}}});
-}
-
-std::shared_ptr<const KeyTable> pose_rotation_table() {
-  return make_table({.name = "rotation",
-                     .description = "A rotation about an axis.",
-                     .keys = {{.name = "axis",
-                               .forms = axis_forms(),
-                               .example = "0 0 1",
-                               .description = "Direction of the axis; any non-zero length.",
-                               .required = true},
-                              {.name = "angle",
-                               .forms = {quantity(angle())},
-                               .example = "20 deg",
-                               .description = "Angle, right-handed about the axis.",
-                               .required = true}}});
-}
-
 }  // namespace
-
-std::shared_ptr<const KeyTable> pose_table() {
-  return make_table({.name = "pose",
-                     .description = "Pose of a rigid body at the start.",
-                     .keys = {{.name = "position",
-                               .forms = {vector(length())},
-                               .example = "0 0 30 mm",
-                               .default_text = "0 0 0 m",
-                               .description = "Position of the body's origin."},
-                              {.name = "rotation",
-                               .forms = {vector(angle()), table(pose_rotation_table())},
-                               .example = "{axis: 0 0 1, angle: 20 deg}",
-                               .default_text = "0 0 0 rad",
-                               .description = "Rotation of the body's axes about its origin: an "
-                                              "axis and an angle, or a rotation vector."}}});
-}
 
 std::shared_ptr<const KeyTable> rigid_table() {
   return make_table(
@@ -156,11 +110,7 @@ std::shared_ptr<const KeyTable> rigid_table() {
                  .default_text = "false",
                  .description = "Whether the body is fixed in the world; it then needs no mass."},
                 {.name = "motion",
-                 .forms = {table(
-                     make_table({.name = "motion of a rigid body",
-                                 .description = "A rotation about an axis, then a translation, "
-                                                "from the body's pose at the start.",
-                                 .keys = motion_keys()}))},
+                 .forms = {body_motion_form()},
                  .example = "{z: {ramp: {to: 10 mm, duration: 1 s}}}",
                  .description = "Prescribed motion of the body, regardless of the forces on it; it "
                                 "then needs no mass. Default: it moves freely, or is fixed."}},

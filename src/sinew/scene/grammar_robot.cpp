@@ -228,62 +228,6 @@ std::shared_ptr<const KeyTable> damping_table() {
                  .description = "Factor of the stiffness matrix."}}});
 }
 
-}  // namespace
-
-std::vector<Key> motion_keys() {
-  const auto along = [](const char* axis) {
-    return Key{.name = axis,
-               .forms = {quantity(length()), table(signal_table(length(), "10 mm"))},
-               .example = "{sine: {amplitude: 10 mm, period: 2 s}}",
-               .default_text = "0 mm",
-               .description = std::string("Along ") + axis + "."};
-  };
-  return {along("x"),
-          along("y"),
-          along("z"),
-          {.name = "angle",
-           .forms = {quantity(angle()), table(signal_table(angle(), "90 deg"))},
-           .example = "{ramp: {to: 90 deg, duration: 2 s}}",
-           .default_text = "0 rad",
-           .description = "Angle of the rotation from rest."},
-          {.name = "axis",
-           .forms = {vector(plain_number())},
-           .example = "0 1 0",
-           .default_text = "0 0 1",
-           .description = "Direction of the rotation axis; any non-zero length."},
-          {.name = "centre",
-           .forms = {vector(length())},
-           .example = "0 0 0 mm",
-           .default_text = "0 0 0 mm",
-           .description = "A point on the rotation axis, at rest."}};
-}
-
-namespace {
-
-std::shared_ptr<const KeyTable> base_table() {
-  return make_table({.name = "base",
-                     .description = "Motion of the fixed nodes from rest: a rotation about an "
-                                    "axis, then a translation. This motion does work on the robot.",
-                     .keys = motion_keys()});
-}
-
-std::shared_ptr<const KeyTable> initial_velocity_table() {
-  return make_table(
-      {.name = "initial velocity",
-       .description =
-           "Initial rigid-body motion; fixed nodes stay at rest. It acts in dynamics only.",
-       .keys = {{.name = "linear",
-                 .forms = {vector(speed())},
-                 .example = "0 0 -1 m/s",
-                 .default_text = "0 0 0 m/s",
-                 .description = "Velocity of the centre of mass."},
-                {.name = "angular",
-                 .forms = {vector(angular_speed())},
-                 .example = "0 0 20 rad/s",
-                 .default_text = "0 0 0 rad/s",
-                 .description = "Angular velocity about the centre of mass."}}});
-}
-
 std::vector<Key> mass_keys() {
   return {
       {.name = "mass",
@@ -344,18 +288,13 @@ std::shared_ptr<const KeyTable> fem_table() {
        .example = "{file: trunk.vtk, unit: mm}",
        .description = "The shape at rest.",
        .required = true},
-      {.name = "position",
-       .forms = {vector(length())},
-       .example = "0 0 60 mm",
-       .default_text = "0 0 0 m",
-       .description = "Position of the mesh origin. Points, boxes and planes of the scene are in "
-                      "world coordinates, with the body at rest."},
-      {.name = "rotation",
-       .forms = {vector(angle())},
-       .example = "0 0 90 deg",
-       .default_text = "0 0 0 rad",
+      {.name = "pose",
+       .forms = {table(pose_table())},
+       .example = "{position: 0 0 60 mm, rotation: {axis: z, angle: 90 deg}}",
+       .default_text = "{}",
        .description =
-           "Rotation of the mesh about its origin: a rotation vector (axis times angle)."},
+           "Position and rotation of the mesh. Points, boxes and planes of the scene are "
+           "in world coordinates, with the body at rest."},
       {.name = "element",
        .forms = {choice(
            {{"tet4",
@@ -392,15 +331,17 @@ std::shared_ptr<const KeyTable> fem_table() {
                       .example = "{mass: 0.1 1/s, stiffness: 0.01 s}",
                       .default_text = "{}",
                       .description = "Rayleigh damping."});
-  fem.keys.push_back({.name = "initial_velocity",
-                      .forms = {table(initial_velocity_table())},
-                      .example = "{linear: 0 0 -1 m/s}",
-                      .default_text = "{}",
-                      .description = "Initial motion; at rest by default."});
-  fem.keys.push_back({.name = "base",
-                      .forms = {table(base_table())},
+  fem.keys.push_back(
+      {.name = "velocity",
+       .forms = {table(velocity_table())},
+       .example = "{linear: 0 0 -1 m/s}",
+       .default_text = "{}",
+       .description = "Initial motion; at rest by default. Fixed nodes stay at rest."});
+  fem.keys.push_back({.name = "motion",
+                      .forms = {body_motion_form()},
                       .example = "{x: {sine: {amplitude: 10 mm, period: 2 s}}}",
-                      .description = "Motion of the fixed nodes. Default: at rest.",
+                      .description = "Motion of the fixed nodes, which does work on the robot. "
+                                     "Default: at rest.",
                       .only_with = "fixed"});
   fem.keys.push_back({.name = "fixed",
                       .forms = {fixed_region(), list({fixed_region()})},

@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <charconv>
+#include <iterator>
 
 #include <fmt/format.h>
 
 #include "sinew/scene/check.hpp"
+#include "sinew/scene/renamed_words.hpp"
 #include "sinew/scene/scene.hpp"
 #include "sinew/scene/values.hpp"
 
@@ -43,6 +45,7 @@ class Walker {
   }
 
   void write(Node value) { *node_ = std::move(value); }
+  const std::vector<Notice>& notices() const { return notices_; }
 
  private:
   static Form form_of_scene() {
@@ -132,11 +135,22 @@ class Walker {
     }
     const KeyTable& table = form.shape == Shape::variants ? table_of(*node_, form) : *form.table;
     const Key* key = table.find(step);
-    if (key == nullptr) throw_unknown_key(step, table, place_);
+    if (key == nullptr) return enter_moved(step, table, last);
     require_one_form(step, table);
     clear_alternatives(step, table);
     forms_ = key->forms;
     descend(step, last);
+  }
+
+  // Enters the place to which a key has moved.
+  void enter_moved(const std::string& step, const KeyTable& table, bool last) {
+    const std::string_view path = moved_key(step, table);
+    if (path.empty()) throw_unknown_key(step, table, place_);
+    notices_.push_back(moved_notice(step, path, place_));
+    const std::vector<std::string> steps = split_path(std::string(path));
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      enter(steps[i], last && i + 1 == steps.size());
+    }
   }
 
   // Refuses a key of one form beside those of another: a material is given by its name, or by its
@@ -201,6 +215,7 @@ class Walker {
   Node* node_;
   std::vector<Form> forms_;
   std::string path_;
+  std::vector<Notice> notices_;
 };
 
 void absolute_paths(Node& node, const std::vector<Form>& forms,
@@ -236,7 +251,7 @@ void absolute_paths(Node& node, const std::vector<Form>& forms,
 
 }  // namespace
 
-void apply_override(Node& tree, const std::string& assignment) {
+std::vector<Notice> apply_override(Node& tree, const std::string& assignment) {
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0) {
     throw Error(ErrorKind::bad_argument, {"", 0, 0, "--set"},
@@ -247,6 +262,8 @@ void apply_override(Node& tree, const std::string& assignment) {
   Node value = parse_yaml(assignment.substr(equals + 1), "--set " + path);
   value.name_file("--set");  // the nodes' own paths follow below
   Node changed = tree;
+  changed.name_paths();
+  std::vector<Notice> notices = replace_moved_keys(changed);
   Walker walker(changed, {"--set", 0, 0, path});
   const std::vector<std::string> steps = split_path(path);
   for (std::size_t i = 0; i < steps.size(); ++i) {
@@ -255,6 +272,8 @@ void apply_override(Node& tree, const std::string& assignment) {
   walker.write(std::move(value));
   changed.name_paths();
   tree = std::move(changed);
+  std::ranges::copy(walker.notices(), std::back_inserter(notices));
+  return notices;
 }
 
 void resolve_paths(Node& tree, const std::filesystem::path& base_dir) {

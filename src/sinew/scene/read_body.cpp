@@ -255,8 +255,9 @@ MeshDescription read_shape(const std::string& shape, const std::vector<std::stri
 
 void read_fem_body(const Fields& fields, const ReadContext& context, BodyDescription& body) {
   body.mesh = read_mesh(fields, context);
-  fields.read("position", body.position);
-  fields.read("rotation", body.rotation);
+  const Fields pose = fields.below("pose");
+  pose.read("position", body.position);
+  body.rotation = read_rotation_vector(pose);
   fields.read_choice("element", body.element,
                      {{"tet4", Element::tet4},
                       {"tet4-patch", Element::tet4_patch},
@@ -270,16 +271,16 @@ void read_fem_body(const Fields& fields, const ReadContext& context, BodyDescrip
   damping.read("mass", body.mass_damping);
   damping.read("stiffness", body.stiffness_damping);
   read_fixed(fields, body);
-  if (fields.find("initial_velocity") != nullptr) {
-    const Fields start = fields.below("initial_velocity");
-    auto& velocity = body.initial_velocity.emplace();
-    velocity.place = fields.place("initial_velocity");
+  if (fields.find("velocity") != nullptr) {
+    const Fields start = fields.below("velocity");
+    auto& velocity = body.velocity.emplace();
+    velocity.place = fields.place("velocity");
     start.read("linear", velocity.linear);
     start.read("angular", velocity.angular);
   }
-  if (fields.find("base") != nullptr) {
-    body.base = read_motion(fields.below("base"), context);
-    body.base_place = fields.place("base");
+  if (fields.find("motion") != nullptr) {
+    body.motion = read_motion(fields.below("motion"), context);
+    body.motion_place = fields.place("motion");
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "sinew/scene/controller_kind.hpp"
 #include "sinew/scene/readers.hpp"
 
 namespace sinew::scene {
@@ -95,48 +96,6 @@ TaskDescription read_task(const Node::Entry& entry, const Form& form, const Read
   return task;
 }
 
-ContactTaskDescription read_contact_task(const Node::Entry& entry, const Form& form) {
-  ContactTaskDescription task;
-  task.contact = entry.key;
-  task.place = entry.key_place;
-  const Fields fields(entry.value, form);
-  control::ContactTask& asked = task.asked;
-  if (const Node* force = fields.find("normal_force")) {
-    if (fields.form("normal_force").shape == Shape::quantity) {
-      fields.read("normal_force", asked.normal_min);
-      asked.normal_max = asked.normal_min;
-    } else {
-      const Fields limits = fields.below("normal_force");
-      limits.read("min", asked.normal_min);
-      limits.read("max", asked.normal_max);
-      if (asked.normal_max < asked.normal_min) {
-        throw Error(
-            ErrorKind::contradictory_limits, force->place(),
-            fmt::format("min, {:g} N, is above max, {:g} N", asked.normal_min, asked.normal_max),
-            "swap them");
-      }
-    }
-  }
-  bool slip = true;
-  double reserve = 0.0;
-  fields.read("slip", slip);
-  const bool reserved = fields.read("reserve", reserve);
-  if (reserved && !(reserve < 1.0)) {
-    throw Error(ErrorKind::out_of_range, fields.place("reserve"),
-                fmt::format("{:g} leaves no friction", reserve), "give a number below 1");
-  }
-  if (reserved || !slip) asked.reserve = reserve;
-  return task;
-}
-
-void read_regularisation(const Fields& fields, ControllerDescription& controller) {
-  const Fields values = fields.below("regularisation");
-  values.read_choice("of", controller.regularisation,
-                     {{"change", Regularisation::change}, {"effort", Regularisation::effort}});
-  double epsilon = 0.0;
-  if (values.read("epsilon", epsilon)) controller.epsilon = epsilon;
-}
-
 void read_driven(const Fields& fields, ControllerDescription& controller) {
   const Node* actuators = fields.find("actuators");
   if (actuators == nullptr) return;
@@ -160,30 +119,15 @@ ControllerDescription read_controller(const Node::Entry& entry, const ReadContex
   controller.place = entry.key_place;
   const Form& form = form_of(grammar(), "controllers", Shape::names).items.front();
   const Fields fields(entry.value, form);
-  const bool closed = read_text(*entry.value.find(form.telltale)) == "closed-loop";
+  controller.kind = &controller_kind(read_text(*entry.value.find(form.telltale)));
   read_driven(fields, controller);
-  if (!closed) read_regularisation(fields, controller);
   if (const Node* effectors = fields.find("effectors")) {
     const Form& tasks = fields.form("effectors").items.front();
     for (const Node::Entry& task : effectors->entries()) {
       controller.tasks.push_back(read_task(task, tasks, context, scene));
     }
   }
-  if (closed) {
-    read_feedback(fields, scene, controller);
-    return controller;
-  }
-  if (const Node* contacts = fields.find("contacts")) {
-    const Form& tasks = fields.form("contacts").items.front();
-    for (const Node::Entry& task : contacts->entries()) {
-      controller.contacts.push_back(read_contact_task(task, tasks));
-    }
-  }
-  if (controller.tasks.empty() && controller.contacts.empty()) {
-    throw Error(ErrorKind::missing_key, controller.place,
-                fmt::format("the controller '{}' steers nothing", controller.name),
-                "give it effectors and their targets, or contacts and their forces");
-  }
+  controller.own = controller.kind->read({fields, context, scene, controller});
   return controller;
 }
 

@@ -44,6 +44,8 @@ PlaneDescription read_plane(const Node::Entry& entry, const ReadContext& context
 MaterialDescription read_material(const Fields& body, const ReadContext& context);
 /// Reads the rotation of a pose. @param pose fields of the pose.
 Matrix3 read_rotation(const Fields& pose);
+/// The same as a rotation vector, rad. @param pose fields of the pose.
+Vector3 read_rotation_vector(const Fields& pose);
 /// Reads a region from one of the keys box, sphere, plane and set.
 FixedRegion read_region(const Fields& fields);
 /// Reads one region or a list of them; empty without the key.
@@ -79,12 +81,6 @@ Vector3 read_axis(const Node& node, const std::vector<Form>& forms);
 /// with the effectors, which determine the size of weights and targets.
 ControllerDescription read_controller(const Node::Entry& entry, const ReadContext& context,
                                       const SceneDescription& scene);
-
-/// Reads the sensors and gains of a closed loop. @param fields of the loop. @param scene with
-/// bodies, actuators, effectors, sensors, contacts and joints. @param controller whose tasks and
-/// actuators have been read.
-void read_feedback(const Fields& fields, const SceneDescription& scene,
-                   ControllerDescription& controller);
 
 /// Reads the signal under `key`: a value, or a map of the signal table.
 model::Signal read_signal(const Fields& fields, std::string_view key, const ReadContext& context);

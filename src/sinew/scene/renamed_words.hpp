@@ -1,6 +1,7 @@
 /// @file
-/// Renamed words of scene files: keys, and words of choices. A scene with an old word is refused
-/// with an error that names the new one. A scene inside a recorded run is still read.
+/// Renamed words of scene files: keys, and words of choices. Keys of bodies that have moved are
+/// still read, with a notice. A scene with another old word is refused with an error that names the
+/// new one. A scene inside a recorded run is read with all of them.
 #pragma once
 
 #include <optional>
@@ -8,9 +9,12 @@
 #include <string_view>
 #include <vector>
 
+#include "sinew/core/notice.hpp"
 #include "sinew/scene/node.hpp"
 
 namespace sinew::scene {
+
+struct KeyTable;
 
 /// The current name of a renamed word; none if the word is still in use or never meant one of
 /// `known`.
@@ -19,8 +23,20 @@ namespace sinew::scene {
 std::optional<std::string> current_word(std::string_view word,
                                         const std::vector<std::string>& known);
 
-/// Replaces the renamed words of a scene. Names chosen by users stay, and so do words that are
-/// still in use where they occur. @param scene as read; it need not be valid.
+/// The dotted path at which a key is written now, such as "pose.position"; empty if it has not
+/// moved. @param key as written. @param table of the map that has it.
+std::string_view moved_key(std::string_view key, const KeyTable& table);
+/// A path as it is written in a scene: "pose: {position: ...}".
+std::string written(std::string_view path);
+/// The notice about a key that has moved. @param old,current what is written, and the path at which
+/// it is written now. @param place of the key.
+Notice moved_notice(std::string_view old, std::string_view current, const Location& place);
+
+/// Moves all keys to where they are written now, with a notice for each. A key stays where it is if
+/// the new place is taken. @param scene as read; it need not be valid.
+std::vector<Notice> replace_moved_keys(Node& scene);
+/// Replaces the renamed words of a scene, and moves its keys. Names chosen by users stay, and so do
+/// words that are still in use where they occur. @param scene as read; it need not be valid.
 void replace_renamed_words(Node& scene);
 
 }  // namespace sinew::scene

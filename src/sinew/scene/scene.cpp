@@ -1,6 +1,7 @@
 #include "sinew/scene/scene.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 
 #include <fmt/format.h>
@@ -131,7 +132,7 @@ void check_carriers(const SceneDescription& scene) {
 void check_initial_velocities(const SceneDescription& scene) {
   if (scene.integrator != Integrator::quasi_static) return;
   for (const BodyDescription& body : scene.bodies) {
-    const auto& start = body.initial_velocity;
+    const auto& start = body.velocity;
     if (!start || (start->linear.isZero(0.0) && start->angular.isZero(0.0))) continue;
     throw Error(ErrorKind::conflicting_keys, start->place,
                 fmt::format("'{}' has an initial velocity, but the integrator is quasi-static, "
@@ -221,7 +222,7 @@ double SceneDescription::run_duration() const {
     for (const model::Signal& signal : motion->translation) end = std::max(end, signal.end_time());
     end = std::max(end, motion->angle.end_time());
   };
-  for (const BodyDescription& body : bodies) include(body.base);
+  for (const BodyDescription& body : bodies) include(body.motion);
   for (const PlaneDescription& plane : planes) include(plane.motion);
   for (const ContactDescription& contact : contacts) include(contact.motion);
   for (const LoadDescription& load : loads) end = std::max(end, load.factor.end_time());
@@ -250,12 +251,26 @@ SceneDescription parse_recorded_scene(std::string_view text, const std::string& 
 
 SceneDescription parse_scene_tree(Node tree, const std::filesystem::path& base_dir, Files files) {
   tree.name_paths();
+  std::vector<Notice> notices = replace_moved_keys(tree);
+  if (!notices.empty()) tree.name_paths();
   check_scene(tree);
   SceneDescription scene = read_scene(tree, {base_dir, files});
-  scene.notices = suspicious_units(tree, {base_dir, files});
+  std::ranges::move(suspicious_units(tree, {base_dir, files}), std::back_inserter(notices));
+  scene.notices = std::move(notices);
   const std::filesystem::path file = tree.place().file;
   scene.name = file.has_stem() ? file.stem().string() : "scene";
   scene.tree = std::move(tree);
+  return scene;
+}
+
+SceneDescription parse_changed_scene(Node tree, const std::vector<std::string>& overrides,
+                                     const std::filesystem::path& base_dir) {
+  std::vector<Notice> notices;
+  for (const std::string& assignment : overrides) {
+    std::ranges::move(apply_override(tree, assignment), std::back_inserter(notices));
+  }
+  SceneDescription scene = parse_scene_tree(std::move(tree), base_dir);
+  scene.notices.insert(scene.notices.begin(), notices.begin(), notices.end());
   return scene;
 }
 

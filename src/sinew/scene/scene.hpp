@@ -37,7 +37,8 @@ SceneDescription parse_scene_text(std::string_view text, const std::string& name
 /// @param text,name as for parse_scene_text(); paths in the text are absolute.
 SceneDescription parse_recorded_scene(std::string_view text, const std::string& name);
 
-/// Reads a scene from a tree. Locations in the tree are kept, and dotted paths are filled in.
+/// Reads a scene from a tree. Locations in the tree are kept, and dotted paths are filled in. Keys
+/// that have moved are read with a notice.
 /// @param tree a map, from read_yaml() or made by hand.
 /// @param base_dir folder at which relative paths start.
 /// @param files see Files.
@@ -49,7 +50,14 @@ SceneDescription parse_scene_tree(Node tree, const std::filesystem::path& base_d
 /// when mass is set, or tension when displacement is. The value may be any YAML ("{sine: ...}").
 /// Throws Error(bad-argument) without "=", Error(unknown-key) or Error(unknown-name) with a
 /// suggestion, Error(syntax-error) in the value. The value itself is checked by parse_scene_tree().
-void apply_override(Node& tree, const std::string& assignment);
+/// Keys of the tree and of the path that have moved are replaced, with a notice for each
+/// (renamed_words.hpp).
+std::vector<Notice> apply_override(Node& tree, const std::string& assignment);
+
+/// Reads a scene from a tree after overrides. Throws what apply_override() and parse_scene_tree()
+/// throw. @param tree,base_dir as for parse_scene_tree(). @param overrides as for apply_override().
+SceneDescription parse_changed_scene(Node tree, const std::vector<std::string>& overrides,
+                                     const std::filesystem::path& base_dir);
 
 /// Makes every file path of the tree absolute, so that the tree can be read in another folder.
 /// Throws what check_scene() throws.

@@ -54,8 +54,8 @@ def scene(folder: Path, friction: float) -> dict[str, Any]:
         bodies[f"finger_{k}"] = {
             "type": "fem", "mesh": {"shape": "trunk", "element_size": "10 mm"}, "element": "tet4-patch", "mass": "42 g",
             "material": {"model": "neo-hookean", "young_modulus": "600 kPa", "poisson_ratio": 0.45},
-            "position": (APART * outwards + [0.0, 0.0, ABOVE]).tolist(),
-            "rotation": [np.pi * np.cos(turn / 2), np.pi * np.sin(turn / 2), 0.0],  # upside down, then about z
+            "pose": {"position": (APART * outwards + [0.0, 0.0, ABOVE]).tolist(),
+                     "rotation": [np.pi * np.cos(turn / 2), np.pi * np.sin(turn / 2), 0.0]},  # upside down, then about z
             "fixed": {"box": [-0.2, -0.2, ABOVE - HELD - 1e-6, 0.2, 0.2, ABOVE + 1e-6]},
         }  # fmt: skip
         cables[f"cable_{k}"] = {

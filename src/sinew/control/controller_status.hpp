@@ -1,5 +1,5 @@
 /// @file
-/// Status of inverse control after a step.
+/// Status of a controller after a step.
 #pragma once
 
 #include <string_view>
@@ -9,7 +9,7 @@ namespace sinew::control {
 /// Status of the targets after a step. The statuses of a robot at rest are given only if it rests:
 /// effectors and actuators move by at most 2e-4 of the tolerance in a step, and forces balance to
 /// 1e-3.
-enum class InverseStatus {
+enum class ControllerStatus {
   not_started,      ///< no step yet
   on_target,        ///< every effector is within the tolerance, and the last prediction held
   moving,           ///< moving towards the targets
@@ -21,11 +21,11 @@ enum class InverseStatus {
   holding,          ///< closed loop: a sensor is silent, and all commands are held
   held_back,        ///< at rest: larger steps failed or missed their predictions, see StepDamping
 };
-inline constexpr int kInverseStatuses = 10;
+inline constexpr int kControllerStatuses = 10;
 /// "not-started", "on-target", "moving", "rate-limited", "out-of-reach", "local-optimum",
 /// "limits-conflict", "at-limits", "holding", "held-back".
-std::string_view inverse_status_name(InverseStatus status);
+std::string_view controller_status_name(ControllerStatus status);
 /// The status of a number in a saved state; the first or last one for numbers beyond them.
-InverseStatus inverse_status_of(double number);
+ControllerStatus controller_status_of(double number);
 
 }  // namespace sinew::control

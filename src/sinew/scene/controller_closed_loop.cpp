@@ -1,19 +1,72 @@
-// Reads closed loops: assigns sensors to effectors, and checks whether the loop can work.
+// Controllers of type closed-loop: assigns sensors to effectors, and checks whether the loop can
+// work.
 #include <algorithm>
+#include <any>
+#include <memory>
 #include <ranges>
 #include <set>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "sinew/control/closed_loop.hpp"
+#include "sinew/core/error.hpp"
+#include "sinew/model/model.hpp"
 #include "sinew/scene/actuator_kind.hpp"
+#include "sinew/scene/controller_kind.hpp"
+#include "sinew/scene/grammar_forms.hpp"
 #include "sinew/scene/readers.hpp"
 #include "sinew/scene/sensor_kind.hpp"
+#include "sinew/sense/sensor_set.hpp"
 
 namespace sinew::scene {
 
+namespace forms {
 namespace {
+
+std::shared_ptr<const KeyTable> closed_loop_table() {
+  return make_table(
+      {.name = "controller: type closed-loop",
+       .description =
+           "Feedback on effectors that sensors measure: before each step, it commands motions of "
+           "actuators, and pressures of chambers, that move the effectors to their targets.",
+       .keys = {tasks_key(true),
+                {.name = "sensors",
+                 .forms = {list({reference("sensors")})},
+                 .example = "[tip]",
+                 .description = "Sensors that measure the effectors: for each effector, a marker "
+                                "at its point or an orientation at its points.",
+                 .required = true},
+                driven_key(),
+                {.name = "gain",
+                 .forms = {quantity(frequency(), positive())},
+                 .example = "8 1/s",
+                 .default_text = "5 1/s",
+                 .description = "Velocity per error: an error decays as exp(-gain t)."},
+                {.name = "integral",
+                 .forms = {quantity(integral_gain(), non_negative())},
+                 .example = "4 1/s^2",
+                 .default_text = "0 1/s^2",
+                 .description =
+                     "Velocity per time integral of the error; gain^2/4 gives critical damping."},
+                {.name = "timeout",
+                 .forms = {quantity(time(), positive())},
+                 .example = "50 ms",
+                 .default_text = "100 ms",
+                 .description = "All commands are held while the last sample of a sensor is older "
+                                "than the sensor's delay plus this time."}}});
+}
+
+}  // namespace
+}  // namespace forms
+
+namespace {
+
+// Error below which a measured effector counts as on target, m or rad.
+constexpr double kMeasuredTolerance = 5e-4;
 
 using Kind = EffectorDescription::Kind;
 
@@ -146,16 +199,16 @@ void check_reach(const SceneDescription& scene, const ControllerDescription& con
 /// Assigns a sensor to each task.
 class Assignment {
  public:
-  Assignment(const SceneDescription& scene, ControllerDescription& controller)
-      : scene_(scene), controller_(controller) {
-    controller_.sensors.assign(controller.tasks.size(), {});
-  }
+  Assignment(const SceneDescription& scene, const ControllerDescription& controller)
+      : scene_(scene), controller_(controller), sensors_(controller.tasks.size()) {}
+
+  const std::vector<std::string>& sensors() const { return sensors_; }
 
   void add(const SensorDescription& sensor, const Location& place) {
     check_kind(sensor, place);
     for (std::size_t t = 0; t < controller_.tasks.size(); ++t) {
       if (!measures(sensor, effector_of(scene_, controller_.tasks[t]))) continue;
-      std::string& own = controller_.sensors[t];
+      std::string& own = sensors_[t];
       if (!own.empty()) {
         throw Error(ErrorKind::duplicate_key, place,
                     fmt::format("'{}' and '{}' measure the same effector, '{}'", own, sensor.name,
@@ -174,7 +227,7 @@ class Assignment {
 
   void check_complete(const Location& place) const {
     for (std::size_t t = 0; t < controller_.tasks.size(); ++t) {
-      if (!controller_.sensors[t].empty()) continue;
+      if (!sensors_[t].empty()) continue;
       const EffectorDescription& effector = effector_of(scene_, controller_.tasks[t]);
       throw Error(
           ErrorKind::missing_key, place,
@@ -185,28 +238,51 @@ class Assignment {
 
  private:
   const SceneDescription& scene_;
-  ControllerDescription& controller_;
+  const ControllerDescription& controller_;
+  std::vector<std::string> sensors_;
 };
 
-}  // namespace
-
-void read_feedback(const Fields& fields, const SceneDescription& scene,
-                   ControllerDescription& controller) {
-  control::Feedback& feedback = controller.feedback.emplace();
-  fields.read("gain", feedback.gain);
-  fields.read("integral", feedback.integral);
-  fields.read("timeout", feedback.timeout);
-  Assignment assignment(scene, controller);
+std::any read_closed_loop(const ControllerEntry& entry) {
+  ClosedLoopDescription loop;
+  const Fields& fields = entry.fields;
+  fields.read("gain", loop.settings.gain);
+  fields.read("integral", loop.settings.integral);
+  fields.read("timeout", loop.settings.timeout);
+  Assignment assignment(entry.scene, entry.controller);
   const Node& sensors = *fields.find("sensors");
   for (const Node& name : sensors.items()) {
     const SensorDescription& sensor =
-        *std::ranges::find(scene.sensors, name.spelling(), &SensorDescription::name);
+        *std::ranges::find(entry.scene.sensors, name.spelling(), &SensorDescription::name);
     assignment.add(sensor, name.place());
-    check_rate(sensor, feedback.timeout,
+    check_rate(sensor, loop.settings.timeout,
                fields.find("timeout") != nullptr ? fields.place("timeout") : name.place());
   }
   assignment.check_complete(sensors.place());
-  check_reach(scene, controller);
+  loop.sensors = assignment.sensors();
+  check_reach(entry.scene, entry.controller);
+  return loop;
+}
+
+control::ControllerSettings build_closed_loop(const ControllerSite& site) {
+  const auto& loop = *site.controller.as<ClosedLoopDescription>();
+  control::ClosedLoopSettings own = loop.settings;
+  for (const std::string& name : loop.sensors) {
+    own.sensors.push_back(sense::sensor_index(site.model, name));
+  }
+  control::TargetSettings targets = site.targets;
+  targets.tolerance = kMeasuredTolerance;
+  return control::settings_for<control::ClosedLoop>(std::move(targets), std::move(own));
+}
+
+}  // namespace
+
+const ControllerKind& closed_loop_kind() {
+  static const ControllerKind kind{.word = "closed-loop",
+                                   .description = "Feedback on measured effectors.",
+                                   .table = forms::closed_loop_table,
+                                   .read = read_closed_loop,
+                                   .build = build_closed_loop};
+  return kind;
 }
 
 }  // namespace sinew::scene

@@ -1,0 +1,36 @@
+#include "sinew/scene/controller_kind.hpp"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "sinew/core/error.hpp"
+#include "sinew/scene/grammar_forms.hpp"
+#include "sinew/scene/kind_list.hpp"
+
+namespace sinew::scene {
+
+namespace {
+
+KindList<ControllerKind>& kinds_of_controllers() {
+  static KindList<ControllerKind> list("controller", {&inverse_kind(), &closed_loop_kind()});
+  return list;
+}
+
+}  // namespace
+
+void register_controller_kind(const ControllerKind& kind) { kinds_of_controllers().add(kind); }
+
+const ControllerKind& controller_kind(std::string_view word) {
+  if (const ControllerKind* found = kinds_of_controllers().find(word)) return *found;
+  throw Error(ErrorKind::internal, {},
+              fmt::format("no kind of controller has the word '{}'", word));
+}
+
+Form forms::controller_form() {
+  std::vector<Choice> choices = kinds_of_controllers().choices();
+  choices.push_back({.word = "policy", .description = "A learnt policy.", .later = true});
+  return variants("type", std::move(choices));
+}
+
+}  // namespace sinew::scene
