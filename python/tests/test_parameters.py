@@ -30,7 +30,7 @@ bodies:
     mass: 20 g
   arm:
     type: pcc
-    position: 0 200 0 mm
+    pose: {position: 0 200 0 mm}
     segments: [{length: 80 mm, mass: 60 g, stiffness: 0.05 N m, damping: 0.002 N m s}]
 membranes:
   skin: {body: finger, surface: {set: z_min}, thickness: 0.2 mm, young_modulus: 1 MPa, poisson_ratio: 0.25}

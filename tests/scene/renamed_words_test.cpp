@@ -47,23 +47,38 @@ void expect_refused(const std::string& text, ErrorKind kind, const std::string& 
   }
 }
 
-TEST(RenamedWords, AUserIsToldTheNewWord) {
-  parse(kNow);
-  expect_refused(robot("pressure", "corotated", "centre"), ErrorKind::unknown_choice,
-                 "'pressure' has another name now; write chamber", 10);
-  expect_refused(robot("chamber", "rotated", "centre"), ErrorKind::unknown_choice,
-                 "'rotated' has another name now; write corotated", 2);
-  expect_refused(robot("chamber", "corotated", "center"), ErrorKind::unknown_key,
-                 "'center' in sphere has another name now; write centre", 8);
+TEST(RenamedWords, AreReadWithANotice) {
+  EXPECT_TRUE(parse(kNow).notices.empty());
+  const SceneDescription scene = parse(kOld);
+  EXPECT_TRUE(scene.tree == parse(kNow).tree) << to_yaml(scene.tree);
+  ASSERT_EQ(scene.notices.size(), 3U);
+  EXPECT_EQ(scene.notices[0].text(),
+            "scene.yaml:2:19: solver.tangent: 'rotated' has another name now; write corotated "
+            "[renamed-word]");
+  EXPECT_EQ(scene.notices[1].place.line, 8);
+  EXPECT_EQ(scene.notices[2].place.line, 10);
+}
+
+// The factorisations that were there for reference.
+TEST(RenamedWords, FactorisationsThatAreNoMore) {
+  const std::string robot =
+      "sinew: 1\nsolver: {factorisation: eigen-ldlt}\nbodies:\n"
+      "  rod:\n"
+      "    type: pcc\n"
+      "    segments: [{length: 100 mm, mass: 10 g, stiffness: 0.1 N m}]\n";
+  const SceneDescription scene = parse(robot);
+  EXPECT_EQ(scene.solver.backend, "block");
+  ASSERT_EQ(scene.notices.size(), 1U);
+  EXPECT_EQ(scene.notices[0].kind, NoticeKind::renamed_word);
 }
 
 TEST(RenamedWords, AnOldTreeBecomesTheNewOne) {
   Node tree = parse_yaml(kOld, "old");
   const Node now = parse_yaml(kNow, "now");
   ASSERT_FALSE(tree == now);
-  replace_renamed_words(tree);
+  replace_old_words(tree);
   EXPECT_TRUE(tree == now) << to_yaml(tree);
-  replace_renamed_words(tree);
+  replace_old_words(tree);
   EXPECT_TRUE(tree == now) << to_yaml(tree);
 }
 
@@ -197,7 +212,7 @@ TEST(RenamedWords, AWordThatIsInUseIsNotOld) {
 TEST(RenamedWords, WhatIsNoSceneStays) {
   Node list = parse_yaml("[center, rotated]", "list");
   const Node before = list;
-  replace_renamed_words(list);
+  replace_old_words(list);
   EXPECT_TRUE(list == before);
 }
 

@@ -245,12 +245,10 @@ const KeyTable& table_of(const Node& map, const Form& form) {
 
 void throw_unknown_key(const std::string& key, const KeyTable& table, const Location& place) {
   const std::vector<std::string> known = table.key_names();
-  std::optional<std::string> now = current_word(key, known);
-  if (const std::string_view path = moved_key(key, table); !path.empty()) now = written(path);
-  if (now) {
+  if (const std::string_view path = moved_key(key, table); !path.empty()) {  // it is taken
     throw Error(ErrorKind::unknown_key, place,
                 fmt::format("{} in {} has another name now", show(key), table.name),
-                fmt::format("write {}", *now));
+                fmt::format("write {}", written(path)));
   }
   throw Error(ErrorKind::unknown_key, place,
               fmt::format("unknown key {} in {}", show(key), table.name),

@@ -144,10 +144,11 @@ class Walker {
 
   // Enters the place to which a key has moved.
   void enter_moved(const std::string& step, const KeyTable& table, bool last) {
-    const std::string_view path = moved_key(step, table);
+    std::string path(moved_key(step, table));
+    if (path.empty()) path = current_word(step, table.key_names()).value_or("");
     if (path.empty()) throw_unknown_key(step, table, place_);
     notices_.push_back(moved_notice(step, path, place_));
-    const std::vector<std::string> steps = split_path(std::string(path));
+    const std::vector<std::string> steps = split_path(path);
     for (std::size_t i = 0; i < steps.size(); ++i) {
       enter(steps[i], last && i + 1 == steps.size());
     }
@@ -263,7 +264,7 @@ std::vector<Notice> apply_override(Node& tree, const std::string& assignment) {
   value.name_file("--set");  // the nodes' own paths follow below
   Node changed = tree;
   changed.name_paths();
-  std::vector<Notice> notices = replace_moved_keys(changed);
+  std::vector<Notice> notices = replace_old_words(changed);
   Walker walker(changed, {"--set", 0, 0, path});
   const std::vector<std::string> steps = split_path(path);
   for (std::size_t i = 0; i < steps.size(); ++i) {

@@ -70,16 +70,14 @@ bool move_entry(Node& map, std::size_t index, std::string_view to) {
 /// Replaces what has other names now: keys that have moved, and words.
 class Renaming {
  public:
-  /// @param words whether words are replaced, too.
-  explicit Renaming(bool words) : words_(words) {}
-
   const std::vector<Notice>& notices() const { return notices_; }
 
   void replace_keys(Node& map, const KeyTable& table) {
     move_keys(map, table);
     const std::vector<std::string> known = table.key_names();
     for (Node::Entry& entry : map.entries()) {
-      if (const auto word = words_ ? current_word(entry.key, known) : std::nullopt) {
+      if (const auto word = current_word(entry.key, known)) {
+        notices_.push_back(moved_notice(entry.key, *word, entry.key_place));
         entry.key = *word;
       }
       if (const Key* key = table.find(entry.key)) replace_in_value(entry.value, key->forms);
@@ -99,12 +97,12 @@ class Renaming {
     }
   }
 
-  void replace_word(Node& node, const Form& form) const {
-    if (!words_) return;
+  void replace_word(Node& node, const Form& form) {
     std::vector<std::string> known;
     for (const Choice& choice : form.choices) known.push_back(choice.word);
     if (const auto word = current_word(node.spelling(), known)) {
       Location place = node.place();
+      notices_.push_back(moved_notice(node.spelling(), *word, place));
       node = Node::text(*word);
       node.set_place(std::move(place));
     }
@@ -134,7 +132,6 @@ class Renaming {
     }
   }
 
-  bool words_;
   std::vector<Notice> notices_;
 };
 
@@ -169,14 +166,10 @@ Notice moved_notice(std::string_view old, std::string_view current, const Locati
           fmt::format("'{}' has another name now", old), fmt::format("write {}", written(current))};
 }
 
-std::vector<Notice> replace_moved_keys(Node& scene) {
-  Renaming renaming(false);
+std::vector<Notice> replace_old_words(Node& scene) {
+  Renaming renaming;
   if (scene.is_map()) renaming.replace_keys(scene, grammar());
   return renaming.notices();
-}
-
-void replace_renamed_words(Node& scene) {
-  if (scene.is_map()) Renaming(true).replace_keys(scene, grammar());
 }
 
 }  // namespace sinew::scene

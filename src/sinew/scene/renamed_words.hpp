@@ -1,7 +1,6 @@
 /// @file
-/// Renamed words of scene files: keys, and words of choices. Keys of bodies that have moved are
-/// still read, with a notice. A scene with another old word is refused with an error that names the
-/// new one. A scene inside a recorded run is read with all of them.
+/// Renamed words of scene files: keys, words of choices, and keys that have moved to another place.
+/// They are still read, with a notice that names the new one; inside a recorded run, without.
 #pragma once
 
 #include <optional>
@@ -32,11 +31,9 @@ std::string written(std::string_view path);
 /// it is written now. @param place of the key.
 Notice moved_notice(std::string_view old, std::string_view current, const Location& place);
 
-/// Moves all keys to where they are written now, with a notice for each. A key stays where it is if
-/// the new place is taken. @param scene as read; it need not be valid.
-std::vector<Notice> replace_moved_keys(Node& scene);
-/// Replaces the renamed words of a scene, and moves its keys. Names chosen by users stay, and so do
-/// words that are still in use where they occur. @param scene as read; it need not be valid.
-void replace_renamed_words(Node& scene);
+/// Replaces the renamed words of a scene, and moves keys to where they are written now, with a
+/// notice for each. Names chosen by users stay, and so do words that are still in use where they
+/// occur, and keys whose new place is taken. @param scene as read; it need not be valid.
+std::vector<Notice> replace_old_words(Node& scene);
 
 }  // namespace sinew::scene

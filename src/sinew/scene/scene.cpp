@@ -245,13 +245,13 @@ SceneDescription parse_scene_text(std::string_view text, const std::string& name
 
 SceneDescription parse_recorded_scene(std::string_view text, const std::string& name) {
   Node tree = parse_yaml(text, name);
-  replace_renamed_words(tree);
+  replace_old_words(tree);
   return parse_scene_tree(std::move(tree));
 }
 
 SceneDescription parse_scene_tree(Node tree, const std::filesystem::path& base_dir, Files files) {
   tree.name_paths();
-  std::vector<Notice> notices = replace_moved_keys(tree);
+  std::vector<Notice> notices = replace_old_words(tree);
   if (!notices.empty()) tree.name_paths();
   check_scene(tree);
   SceneDescription scene = read_scene(tree, {base_dir, files});

@@ -9,7 +9,6 @@
 #include "sinew/core/whole.hpp"
 #include "sinew/scene/check.hpp"
 #include "sinew/scene/other_words.hpp"
-#include "sinew/scene/renamed_words.hpp"
 
 namespace sinew::scene {
 
@@ -198,11 +197,6 @@ const Choice& read_choice(const Node& node, const Form& form) {
     if (!is_word(choice.word, node, form)) continue;
     if (choice.later) throw_later(show(choice.word), "write one of " + join(words), node.place());
     return choice;
-  }
-  if (const auto word = current_word(node.spelling(), words)) {
-    throw Error(ErrorKind::unknown_choice, node.place(),
-                fmt::format("{} has another name now", show(node.spelling())),
-                fmt::format("write {}", *word));
   }
   throw Error(ErrorKind::unknown_choice, node.place(),
               fmt::format("{} is not a choice here", show(node.spelling())),
