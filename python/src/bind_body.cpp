@@ -220,7 +220,7 @@ centre : (3,) array_like
 Raises
 ------
 Error
-    bad-argument if the scene moves this base by `base`; nothing-fixed; not-finite.
+    bad-argument if the scene moves this base by `motion`; nothing-fixed; not-finite.
 )");
   type.def_property_readonly(
           "positions", [](const Body& self) { return points_view(self, body(self).positions()); },

@@ -67,9 +67,10 @@ void Surroundings::move_base(int body, const Vector3& translation, const Vector3
   const Location place{.item = fmt::format("base of body '{}'", name)};
   if (std::ranges::any_of(model_.base_motions(),
                           [&](const model::BaseMotion& motion) { return motion.body == body; })) {
-    throw Error(ErrorKind::bad_argument, place, "the scene moves this base",
-                "leave `base` out of the scene to move it from a script, or write the motion there "
-                "as signals");
+    throw Error(
+        ErrorKind::bad_argument, place, "the scene moves this base",
+        "leave `motion` out of the scene to move it from a script, or write the motion there "
+        "as signals");
   }
   if (base == nullptr) {
     throw Error(ErrorKind::wrong_type, place, "this body has no base that can be moved",
