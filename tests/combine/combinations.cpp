@@ -97,9 +97,8 @@ int main(int count, char** words) {
   if (prints) {
     Selection selection = pairs ? pairwise_cover().at(printed) : random_selection(printed);
     if (known) {
-      for (const char* one : {"other_body", "other_actuator", "other_load", "other_sensor"}) {
-        set_level(selection, one, "none");
-      }
+      set_level(selection, "other_body", "none");
+      set_level(selection, "other_actuator", "none");
     }
     std::cout << write_scene(trial == Trial::symmetric ? draft_symmetric_scene(selection, printed)
                                                        : draft_scene(selection, printed));

@@ -97,14 +97,7 @@ std::vector<std::string> without(std::vector<std::string> levels, std::string_vi
   return levels;
 }
 
-// The kinds that the generator writes.
-const std::vector<std::string> kLoads{"force",        "line",     "traction",
-                                      "acceleration", "pressure", "water"};
-const std::vector<std::string> kSensors{
-    "marker",    "orientation", "gyroscope",   "accelerometer", "cable-length", "cable-tension",
-    "pressure",  "volume",      "flow",        "motor-current", "stretch",      "resistance",
-    "curvature", "attenuation", "capacitance", "contact-force", "touch"};
-
+// Of the toys' kinds, it has those of bodies and actuators.
 std::vector<Feature> list_features() {
   const KeyTable& solver = map_of(scene::grammar(), "solver");
   const KeyTable& fem = variant_table("bodies", "fem");
@@ -153,7 +146,7 @@ std::vector<Feature> list_features() {
       {"spring", or_none(with(alternatives(spring, "stiffness"), {"coil", "band"}))},
       {"force", or_none(alternatives(map_of(force, "command"), "force"))},
       {"torque", or_none(alternatives(map_of(torque, "command"), "torque"))},
-      {"load", or_none(kLoads)},
+      {"load", or_none(without(words(variants(items("loads"), "type")), "couple"))},
       {"mass", switched},
       // Contact with a fixed surface, a passing rigid or soft body, the body itself, or a rigid
       // body of shape plane.
@@ -173,7 +166,7 @@ std::vector<Feature> list_features() {
       {"cable_end", {"own", "link"}},
       {"effector", or_none(without(alternatives(effector, "point"), "points"))},
       {"probe", or_none(without(alternatives(probe, "point"), "points"))},
-      {"sensor", or_none(kSensors)},
+      {"sensor", or_none(without(words(variants(items("sensors"), "type")), "speedometer"))},
       // With feedback, a closed loop replaces it. The toys' own law is tested beside them.
       {"controller",
        or_none(without(without(words(variants(items("controllers"), "type")), "closed-loop"),
@@ -190,8 +183,6 @@ std::vector<Feature> list_features() {
       {"other_body", or_none(other_kinds("bodies", {"fem", "pcc", "rigid", "urdf"}))},
       {"other_actuator", or_none(other_kinds("actuators", {"cable", "force", "torque", "motor",
                                                            "linear-motor", "chamber", "spring"}))},
-      {"other_load", or_none(other_kinds("loads", kLoads))},
-      {"other_sensor", or_none(other_kinds("sensors", kSensors))},
   };
 }
 

@@ -133,8 +133,6 @@ class Drafter {
     add_sensor();
     add_estimator();
     add_controller();
-    add_other_load();
-    add_other_sensor();
     SceneDraft draft{settings_, {}};
     for (const char* section :
          {"bodies", "actuators", "loads", "masses", "membranes", "effectors", "probes", "sensors",
@@ -555,24 +553,6 @@ class Drafter {
     steerable_.push_back({"drive", id});
   }
 
-  // A load of a kind that only the registry knows.
-  void add_other_load() {
-    const Body* on = body(true);
-    if (!has("other_load") || on == nullptr) return;
-    add("loads", "strange", "{" + example_of("loads", of("other_load"), on->id, nullptr) + "}");
-  }
-
-  // A sensor of a kind that only the registry knows.
-  void add_other_sensor() {
-    if (!has("other_sensor")) return;
-    const std::string id = has("other_body") ? "other" : some_body().id;
-    const bool at = variant_table("sensors", of("other_sensor")).find("outside") != nullptr;
-    add("sensors", "strange_sense",
-        fmt::format("{{{}{}, delay: 15 ms, dropout: 20 %}}",
-                    example_of("sensors", of("other_sensor"), id, nullptr),
-                    at ? ", outside: nearest" : ""));
-  }
-
   void add_torque() {
     const Body* on = body(false);
     if (!has("torque") || on == nullptr) return;
@@ -970,7 +950,7 @@ SceneDraft draft_symmetric_scene(Selection selection, std::uint64_t seed) {
   set_level(selection, "bodies", "fem");
   set_level(selection, "mesh", seed % 2 == 0 ? "block" : "ribbed-finger");
   for (const char* one : {"chamber", "link", "controller", "estimator", "contact_zones",
-                          "other_body", "other_actuator", "other_load"}) {
+                          "other_body", "other_actuator"}) {
     set_level(selection, one, "none");
   }
   if (level(selection, "element") == "tet4-patch") set_level(selection, "element", "tet10");

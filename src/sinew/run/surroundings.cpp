@@ -25,8 +25,9 @@ mechanics::Body& body_of(const world::Bodies& bodies, int index) {
 
 Surroundings::Surroundings(const model::Model& model, world::Bodies& bodies)
     : model_(model), bodies_(bodies) {
-  for (const model::LoadModel& load : model_.loads()) factors_.push_back(load.factor);
+  factors_.resize(model_.loads().size());
   applied_.resize(factors_.size());
+  restart();
 }
 
 void Surroundings::set_factor(int load, model::Signal factor) {
@@ -99,7 +100,7 @@ void Surroundings::apply(std::size_t load, double factor) {
 void Surroundings::restart() {
   for (std::size_t k = 0; k < factors_.size(); ++k) {
     factors_[k] = model_.loads()[k].factor;
-    applied_[k] = 0.0;
+    apply(k, 0.0);  // as in a state that is restored from before the first step
   }
 }
 
