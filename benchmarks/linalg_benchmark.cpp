@@ -17,7 +17,7 @@
 #include "sinew/linalg/factorisation.hpp"
 #include "sinew/mesh/read.hpp"
 
-#include "../tests/toys/solvers.hpp"
+#include "../tests/toys/eigen_solvers.hpp"
 #include "cholmod_matrix.hpp"
 #include "mesh_matrices.hpp"
 

@@ -82,6 +82,7 @@ TEST(Combination, OrderDoesNotMatterWhereManyHoldOneJoint) {
                                       {"integrator", "event-driven"},
                                       {"method", "newton"},
                                       {"tangent", "projected"},
+                                      {"factorisation", "eigen-ldlt"},
                                       {"ordering", "fastest"},
                                       {"cable", "displacement"},
                                       {"cable_signal", "steps"},

@@ -7,6 +7,7 @@
 
 #include "sinew/scene/grammar.hpp"
 
+#include "../toys/eigen_solvers.hpp"  // registers solvers
 #include "../toys/scene_kinds.hpp"
 #include "random.hpp"
 

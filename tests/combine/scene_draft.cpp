@@ -253,7 +253,7 @@ class Drafter {
   std::string element_of() const {
     const bool patches = of("material") != "saint-venant-kirchhoff";
     const bool quadratic = hyperelastic() && (!has("element") || of("element") == "tet10");
-    const bool slow = has("estimator");
+    const bool slow = has("estimator") || of("factorisation") != "block";
     if (quadratic && slow) return "tet4";  // patches are not symmetric
     const bool fits = of("element") != "tet4-patch" || patches;
     const bool named = has("element") && fits && (hyperelastic() || of("element") == "tet4");

@@ -9,7 +9,7 @@
 #include "sinew/linalg/dense.hpp"
 #include "sinew/linalg/factor_memory.hpp"
 
-#include "../toys/solvers.hpp"
+#include "../toys/gradient_solver.hpp"
 #include "mesh_matrices.hpp"
 
 namespace sinew::linalg {
@@ -27,7 +27,7 @@ FactorisationSettings settings_of(const std::string& backend,
 }
 
 // Those that solve to rounding.
-std::vector<std::string> direct_backends() { return {"block", "eigen-ldlt"}; }
+std::vector<std::string> direct_backends() { return {"block", "eigen-ldlt", "eigen-llt"}; }
 
 FactorStatus factorise(Factorisation& factorisation, const BlockSystem& system) {
   return factorisation.factorise(system.matrix, system.rows, system.right);

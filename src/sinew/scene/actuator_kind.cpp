@@ -16,8 +16,6 @@ KindList<ActuatorKind>& kinds_of_actuators() {
 
 }  // namespace
 
-const std::vector<const ActuatorKind*>& actuator_kinds() { return kinds_of_actuators().all(); }
-
 void register_actuator_kind(const ActuatorKind& kind) { kinds_of_actuators().add(kind); }
 
 const ActuatorKind& actuator_kind(std::string_view word) { return kinds_of_actuators().get(word); }

@@ -70,8 +70,6 @@ struct ActuatorKind {
   const char* word() const { return words->word; }
 };
 
-/// The kinds, in the order of the reference.
-const std::vector<const ActuatorKind*>& actuator_kinds();
 /// Adds a kind from outside the library. Call it before the grammar is first used, from one thread.
 /// @param kind must outlive the program. Throws Error: duplicate-key (its word is taken),
 /// bad-argument (the grammar is in use).

@@ -27,8 +27,6 @@ void refuse_world(const Node::Entry& body) {
               "give the body another name");
 }
 
-const std::vector<const BodyKind*>& body_kinds() { return kinds_of_bodies().all(); }
-
 void register_body_kind(const BodyKind& kind) { kinds_of_bodies().add(kind); }
 
 Form forms::body_form() {

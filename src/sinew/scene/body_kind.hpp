@@ -5,7 +5,6 @@
 
 #include <memory>
 #include <string_view>
-#include <vector>
 
 #include "sinew/mechanics/body_model.hpp"
 #include "sinew/scene/build_parts.hpp"
@@ -45,8 +44,6 @@ struct BodyKind {
   const char* carry_masses = "make the body of type fem";
 };
 
-/// The kinds, in the order of the reference.
-const std::vector<const BodyKind*>& body_kinds();
 /// Adds a kind from outside the library. Call it before the grammar is first used, from one thread.
 /// @param kind must outlive the program. Throws Error: duplicate-key (its word is taken),
 /// bad-argument (the grammar is in use).

@@ -17,8 +17,6 @@ KindList<JointKind>& kinds_of_joints() {
 
 }  // namespace
 
-const std::vector<const JointKind*>& joint_kinds() { return kinds_of_joints().all(); }
-
 void register_joint_kind(const JointKind& kind) { kinds_of_joints().add(kind); }
 
 const JointKind& joint_kind(std::string_view word) { return kinds_of_joints().get(word); }

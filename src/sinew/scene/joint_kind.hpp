@@ -5,7 +5,6 @@
 
 #include <memory>
 #include <string_view>
-#include <vector>
 
 #include "sinew/scene/build_parts.hpp"
 #include "sinew/scene/description.hpp"
@@ -34,8 +33,6 @@ struct JointKind {
   bool is_bond = false;
 };
 
-/// The kinds, in the order of the reference.
-const std::vector<const JointKind*>& joint_kinds();
 /// Adds a kind from outside the library. Call it before the grammar is first used, from one thread.
 /// @param kind must outlive the program. Throws Error: duplicate-key (its word is taken),
 /// bad-argument (the grammar is in use).

@@ -21,8 +21,6 @@ KindList<LoadKind>& kinds_of_loads() {
 
 }  // namespace
 
-const std::vector<const LoadKind*>& load_kinds() { return kinds_of_loads().all(); }
-
 void register_load_kind(const LoadKind& kind) { kinds_of_loads().add(kind); }
 
 const LoadKind& load_kind(std::string_view word) { return kinds_of_loads().get(word); }

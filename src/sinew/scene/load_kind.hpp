@@ -46,8 +46,6 @@ struct LoadKind {
   bool signal_is_value() const { return std::string_view(signal) != "factor"; }
 };
 
-/// The kinds, in the order of the reference.
-const std::vector<const LoadKind*>& load_kinds();
 /// Adds a kind from outside the library. Call it before the grammar is first used, from one thread.
 /// @param kind must outlive the program. Throws Error: duplicate-key (its word is taken),
 /// bad-argument (the grammar is in use).

@@ -16,8 +16,6 @@ KindList<MaterialKind>& kinds_of_materials() {
 
 }  // namespace
 
-const std::vector<const MaterialKind*>& material_kinds() { return kinds_of_materials().all(); }
-
 void register_material_kind(const MaterialKind& kind) { kinds_of_materials().add(kind); }
 
 const MaterialKind& material_kind(std::string_view word) { return kinds_of_materials().get(word); }

@@ -5,7 +5,6 @@
 
 #include <memory>
 #include <string_view>
-#include <vector>
 
 #include "sinew/scene/description.hpp"
 #include "sinew/scene/fields.hpp"
@@ -23,8 +22,6 @@ struct MaterialKind {
   void (*read)(const Fields& fields, MaterialDescription& material) = nullptr;
 };
 
-/// The kinds, in the order of the reference.
-const std::vector<const MaterialKind*>& material_kinds();
 /// Adds a kind from outside the library. Call it before the grammar is first used, from one thread.
 /// @param kind must outlive the program. Throws Error: duplicate-key (its word is taken),
 /// bad-argument (the grammar is in use).

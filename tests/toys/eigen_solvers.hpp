@@ -1,15 +1,13 @@
 /// @file
-/// Linear solvers that the library does not know: Eigen's factorisation, which counts negative
-/// pivots, and conjugate gradients, which do not.
+/// Linear solvers that the library does not know: Eigen's factorisations.
 #pragma once
 
 #include <cstddef>
 #include <memory>
 #include <optional>
 #include <span>
-#include <vector>
+#include <utility>
 
-#include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 
@@ -70,48 +68,42 @@ class EigenSolver final : public linalg::LinearSolver {
   int negative_ = 0;
 };
 
-/// Conjugate gradients with a diagonal preconditioner. It knows of a matrix that is not positive
-/// definite only what the diagonal shows.
-class GradientSolver final : public linalg::LinearSolver {
+/// Eigen's SimplicialLLT, to which an indefinite matrix is singular.
+class EigenCholesky final : public linalg::LinearSolver {
  public:
-  explicit GradientSolver(linalg::BlockPattern pattern) : pattern_(std::move(pattern)) {
-    solver_.setTolerance(1e-13);
-  }
+  explicit EigenCholesky(linalg::BlockPattern pattern) : pattern_(std::move(pattern)) {}
 
   linalg::FactorStatus prepare(std::span<const double> matrix) override {
-    matrix_ = lower_triangle(pattern_, matrix);
-    solver_.compute(matrix_);
-    const VectorX diagonal = matrix_.diagonal();
-    if (!diagonal.allFinite() || diagonal.cwiseAbs().minCoeff() == 0.0) {
-      return linalg::FactorStatus::singular;
-    }
-    return diagonal.minCoeff() < 0.0 ? linalg::FactorStatus::indefinite
-                                     : linalg::FactorStatus::positive_definite;
+    solver_.compute(lower_triangle(pattern_, matrix));
+    return solver_.info() == Eigen::Success ? linalg::FactorStatus::positive_definite
+                                            : linalg::FactorStatus::singular;
   }
   void solve(std::span<const double> right, std::span<double> x, int count) override {
     const Eigen::Map<const MatrixX> b(right.data(), 3 * pattern_.nodes, count);
     Eigen::Map<MatrixX>(x.data(), b.rows(), count) = solver_.solve(b).eval();
   }
+  std::optional<int> negative_pivots() const override { return 0; }
   std::size_t bytes() const override { return sizeof(double) * 3 * 3 * pattern_.row.size(); }
 
  private:
   linalg::BlockPattern pattern_;
-  SparseMatrix matrix_;
-  Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower> solver_;
+  Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<int>> solver_;
 };
 
+/// Registers a solver. @param name,description in scenes.
+template <class Solver>
+void register_solver(const char* name, const char* description) {
+  linalg::register_backend(
+      {.name = name,
+       .description = description,
+       .make = [](const linalg::BlockPattern& pattern, const linalg::FactorisationSettings&,
+                  ThreadPool&) { return std::make_unique<Solver>(pattern); }});
+}
+
 /// Registers both before main() of a test program that includes this file.
-inline const bool kSolversRegistered = [] {
-  linalg::register_backend(
-      {.name = "eigen-ldlt",
-       .description = "Eigen's SimplicialLDLT, for tests.",
-       .make = [](const linalg::BlockPattern& pattern, const linalg::FactorisationSettings&,
-                  ThreadPool&) { return std::make_unique<EigenSolver>(pattern); }});
-  linalg::register_backend(
-      {.name = "gradients",
-       .description = "Conjugate gradients, for tests.",
-       .make = [](const linalg::BlockPattern& pattern, const linalg::FactorisationSettings&,
-                  ThreadPool&) { return std::make_unique<GradientSolver>(pattern); }});
+inline const bool kEigenRegistered = [] {
+  register_solver<EigenSolver>("eigen-ldlt", "Eigen's SimplicialLDLT, for reference.");
+  register_solver<EigenCholesky>("eigen-llt", "Eigen's SimplicialLLT, for reference.");
   return true;
 }();
 
