@@ -23,8 +23,8 @@ namespace {
 
 using namespace identify;
 
-Parameter to_parameter(const std::string& name, const py::handle& value) {
-  Parameter parameter{.name = name};
+identify::Parameter to_parameter(const std::string& name, const py::handle& value) {
+  identify::Parameter parameter{.name = name};
   const std::string place = fmt::format("fit(parameters[{}])", name);
   if (!py::isinstance<py::sequence>(value) && !py::isinstance<py::array>(value)) {
     parameter.start = to_number(value, place, "");
@@ -58,7 +58,7 @@ void require_measured(const VectorX& data) {
 class FitWatch {
  public:
   FitWatch(const py::object& limit, const py::object& progress,
-           const std::vector<Parameter>& parameters)
+           const std::vector<identify::Parameter>& parameters)
       : parameters_(parameters) {
     if (!limit.is_none()) {
       limit_ = to_number(limit, "fit(time_limit)", "s");
@@ -109,7 +109,7 @@ class FitWatch {
     return result;
   }
 
-  const std::vector<Parameter>& parameters_;
+  const std::vector<identify::Parameter>& parameters_;
   double limit_ = std::numeric_limits<double>::infinity();
   std::optional<py::object> call_;
   bool prints_ = false, printed_ = false;
@@ -120,12 +120,12 @@ ParameterFit fit(const py::function& predict, const py::object& measured, const 
                  const std::vector<std::string>& fixed, int starts, std::uint64_t seed,
                  double confidence, double step, int max_iterations, const py::object& time_limit,
                  const py::object& progress, bool allow_missing) {
-  std::vector<Parameter> parameters;
+  std::vector<identify::Parameter> parameters;
   for (const auto& [key, value] : given) {
     parameters.push_back(to_parameter(py::cast<std::string>(key), value));
   }
   for (const std::string& name : fixed) {
-    const auto found = std::ranges::find(parameters, name, &Parameter::name);
+    const auto found = std::ranges::find(parameters, name, &identify::Parameter::name);
     if (found == parameters.end()) {
       throw Error(ErrorKind::unknown_name, {.item = name}, "there is no such parameter to fix",
                   "name one of the parameters");
@@ -140,7 +140,7 @@ ParameterFit fit(const py::function& predict, const py::object& measured, const 
   if (!allow_missing) require_measured(data);
   VectorX scales(static_cast<Eigen::Index>(parameters.size()));
   for (std::size_t k = 0; k < parameters.size(); ++k) {
-    const Parameter& p = parameters[k];
+    const identify::Parameter& p = parameters[k];
     const double range = p.upper - p.lower;
     scales[static_cast<Eigen::Index>(k)] = p.fixed                ? 0.0
                                            : p.start != 0.0       ? std::abs(p.start)

@@ -28,7 +28,7 @@ const sense::SensorModel& model(const Sensor& self) {
 }
 
 // A number for one component, an array for several.
-py::object to_python(std::span<const double> values) {
+py::object number_or_array(std::span<const double> values) {
   if (values.size() == 1) return py::float_(values.front());
   const auto count = static_cast<Eigen::Index>(values.size());
   return reading(VectorX(Eigen::Map<const VectorX>(values.data(), count)));
@@ -103,7 +103,7 @@ void bind_sensor_type(py::module_& module) {
           "float: time from taking a sample to its delivery (s).")
       .def_property_readonly(
           "value", of_channel([](const Channel& channel, const sim::Simulation&) {
-            return to_python(channel.value());
+            return number_or_array(channel.value());
           }),
           "float, or (size,) ndarray: last delivered sample, in its unit; nan before the first.")
       .def_property_readonly(
@@ -130,7 +130,7 @@ void bind_sensor_type(py::module_& module) {
           "true_value",
           [](const Sensor& self) {
             const Session::Use use(*self.session);
-            return to_python(sense::sensors_of(self.session->simulation()).truth(self.index));
+            return number_or_array(sense::sensors_of(self.session->simulation()).truth(self.index));
           },
           "float, or (size,) ndarray: present value without errors and delay.")
       .def("feed", &feed, py::arg("value"), py::arg("time") = py::none(),
@@ -271,7 +271,7 @@ missing. Raises Error: wrong-type, wrong-length, not-finite, non-monotonic-time.
           "\n"
           "Whether there is a sample not older than the timeout at a time (s).\n")
       .def_property_readonly(
-          "value", [](const Channel& self) { return to_python(self.value()); },
+          "value", [](const Channel& self) { return number_or_array(self.value()); },
           "float, or (size,) ndarray: last delivered sample; nan before the first.")
       .def_property_readonly("time", &Channel::time,
                              "float: time at which it was taken (s); nan before the first.")

@@ -42,7 +42,7 @@ std::shared_ptr<Session> load_text(const std::string& text,
 
 std::shared_ptr<Session> load_recorded(const std::string& text) {
   scene::Node tree = scene::parse_yaml(text, "scene");
-  scene::replace_renamed_words(tree);
+  scene::replace_old_words(tree);
   return build(std::move(tree), {}, {}, "scene", std::nullopt);
 }
 

@@ -261,7 +261,7 @@ TEST(Pressure, QueriesBeforeTheFirstStepAreTheSame) {
   const auto model = cantilever_with_wind(cantilever_mesh());
   Simulation simulation(model), other(model);
   const VectorX first = linear_model(simulation).imbalance;
-  EXPECT_EQ(first.norm(), 0.0);
+  EXPECT_LT(first.norm(), 1e-12) << "N";
   EXPECT_EQ(linear_model(simulation).imbalance, first);
   other.step();
   EXPECT_GT(linear_model(other).imbalance.norm(), 0.0);

@@ -169,9 +169,11 @@ std::shared_ptr<const KeyTable> solver_table() {
             .default_text = "block",
             .description = "Factorisation of the matrix."},
            {.name = "ordering",
-            .forms = {choice({{"fastest", "The faster of `amd` and `metis`, timed at the start."},
-                              {"amd", "Approximate minimum degree."},
-                              {"metis", "Nested dissection."}})},
+            .forms = {choice(
+                {{"fastest",
+                  "The faster of `amd` and `metis`, by an estimate that reads no clock."},
+                 {"amd", "Approximate minimum degree."},
+                 {"metis", "Nested dissection."}})},
             .example = "metis",
             .default_text = "fastest",
             .description = "Elimination order of the unknowns."}}});
