@@ -99,6 +99,7 @@ int main(int count, char** words) {
     if (known) {
       set_level(selection, "other_body", "none");
       set_level(selection, "other_actuator", "none");
+      set_level(selection, "factorisation", "block");
     }
     std::cout << write_scene(trial == Trial::symmetric ? draft_symmetric_scene(selection, printed)
                                                        : draft_scene(selection, printed));

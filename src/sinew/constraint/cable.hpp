@@ -48,7 +48,6 @@ class Cable : public Constraint {
 
   void describe(PartVisitor& visitor) const override {
     visitor.add(pull_point_, rest_length_, friction_);
-    if (friction_ > 0.0) visitor.list("friction", "", friction_);
   }
 
   /// True while every segment is under tension.

@@ -65,8 +65,12 @@ void visit_actuator(PartVisitor& visitor, const ModelData& data, std::size_t ind
   }
   if (actuator.drive != nullptr) actuator.drive->describe(visitor);
   visit_constraint(visitor, data, actuator.constraint);
+  bool listed = false;  // all guides of a cable have the same friction
   for (const GuideModel& guide : data.guides) {
-    if (guide.actuator == static_cast<int>(index)) visitor.add(guide.via, guide.friction);
+    if (guide.actuator != static_cast<int>(index)) continue;
+    visitor.add(guide.via, guide.friction);
+    if (!listed) visitor.list("friction", "", guide.friction);
+    listed = true;
   }
 }
 

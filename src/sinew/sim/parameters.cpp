@@ -28,7 +28,8 @@ void each_input(const Simulation& simulation, Visit visit) {
     const model::ActuatorModel& actuator = model.actuators()[static_cast<std::size_t>(a)];
     const model::Command& told = simulation.actuator(a).command;
     const law::QuantityName quantity = actuator.quantity(told.kind);
-    if (!told.signal.is_constant() || *quantity.name == '\0') continue;
+    const bool takes = actuator.kind_of(quantity.name) == told.kind;  // a spring takes none
+    if (!told.signal.is_constant() || !takes) continue;
     visit(Parameter{fmt::format("actuators.{}.command.{}", actuator.name, quantity.name),
                     quantity.unit, told.signal.value(time)},
           [a, kind = told.kind](Simulation& of, double value) {
