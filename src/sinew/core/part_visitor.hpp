@@ -44,7 +44,7 @@ class PartVisitor {
     hash_.add(values...);
     return *this;
   }
-  /// Adds a parameter. @param name after the path of the part. @param unit SI.
+  /// Adds a parameter. @param name after the path of the part. @param unit SI. @param value in it.
   PartVisitor& number(std::string_view name, std::string_view unit, double value) {
     hash_.add(value);
     list(name, unit, value);

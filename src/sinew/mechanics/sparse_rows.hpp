@@ -32,8 +32,8 @@ class SiteLevers {
 /// single row here, each with its share.
 class SparseRows {
  public:
-  /// @param plan,held,levers must outlive this. @param held coordinates that do not move,
-  ///   ascending.
+  /// @param plan,levers must outlive this. @param held coordinates that do not move, ascending; must
+  ///   outlive this.
   SparseRows(const SparseRowPlan& plan, std::span<const std::int32_t> held,
              const SiteLevers& levers);
 
@@ -41,7 +41,8 @@ class SparseRows {
   void take(const RowValues& rows);
   /// Adds H^T effort. @param effort see the class. @param sum (size,) N.
   void add_forces(std::span<const double> effort, VectorX& sum) const;
-  /// See StepSystem. @param factor bordered by border().
+  /// See StepSystem. @param problem_row,compliance,free_motion as there.
+  /// @param factor bordered by border().
   void add_compliance(std::span<const int> problem_row, linalg::Factorisation& factor,
                       MatrixX& compliance, VectorX& free_motion) const;
   /// Whether all rows taken are in the border.

@@ -58,8 +58,8 @@ class SparseStep : public StepSystem, protected SiteLevers {
   virtual std::size_t bytes() const;
 
  protected:
-  /// @param size number of coordinates, three for each block. @param plan,held must outlive this.
-  /// @param held coordinates that do not move, ascending.
+  /// @param size number of coordinates, three for each block. @param plan must outlive this.
+  /// @param held coordinates that do not move, ascending; must outlive this.
   SparseStep(std::size_t size, const SparseRowPlan& plan, std::span<const std::int32_t> held);
 
   /// Computes b and A at the current state. @param request tangent and weights.
