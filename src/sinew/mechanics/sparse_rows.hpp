@@ -32,7 +32,8 @@ class SiteLevers {
 /// single row here, each with its share.
 class SparseRows {
  public:
-  /// @param plan,levers must outlive this. @param held coordinates that do not move, ascending; must
+  /// @param plan,levers must outlive this. @param held coordinates that do not move, ascending;
+  /// must
   ///   outlive this.
   SparseRows(const SparseRowPlan& plan, std::span<const std::int32_t> held,
              const SiteLevers& levers);
