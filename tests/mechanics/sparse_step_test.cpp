@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/rotation.hpp"
 #include "sinew/core/thread_pool.hpp"
 
 namespace sinew::mechanics {
@@ -31,12 +32,6 @@ std::mt19937& numbers() {
 MatrixX random(Eigen::Index rows, Eigen::Index columns) {
   std::uniform_real_distribution<double> number(-1.0, 1.0);
   return MatrixX::NullaryExpr(rows, columns, [&] { return number(numbers()); });
-}
-
-Matrix3 cross_matrix(const Vector3& l) {
-  Matrix3 m;
-  m << 0.0, -l[2], l[1], l[2], 0.0, -l[0], -l[1], l[0], 0.0;
-  return m;
 }
 
 BlockSites make_sites() {

@@ -139,12 +139,12 @@ std::vector<double> element_weights(const mesh::Mesh& mesh, const FemModelSettin
   if (!settings.sample) return std::vector<double>(count, 1.0);
   check_sample(mesh, settings);
   const ElementSample& sample = *settings.sample;
+  const auto fail = [&](ErrorKind kind, const std::string& message, const char* remedy) {
+    throw Error(kind, {.file = mesh.name, .item = "sample"}, message, remedy);
+  };
   std::vector<double> weights(count, 0.0);
   for (std::size_t k = 0; k < sample.elements.size(); ++k) {
     const NodeId e = sample.elements[k];
-    const auto fail = [&](ErrorKind kind, const std::string& message, const char* remedy) {
-      throw Error(kind, {.file = mesh.name, .item = "sample"}, message, remedy);
-    };
     if (e < 0 || static_cast<std::size_t>(e) >= count) {
       fail(ErrorKind::index_out_of_range, fmt::format("element {} of {}", e, count),
            "count from 0");
@@ -180,16 +180,18 @@ std::vector<NodeId> number_free_nodes(const mesh::Mesh& mesh, const FemModelSett
                                       std::span<const double> weights) {
   std::vector<NodeId> result(static_cast<std::size_t>(mesh.node_count()), -1);
   const auto use = [&](const auto& nodes) {
-    for (const NodeId node : nodes) {
-      check_node(node, mesh, "membranes");
-      result[static_cast<std::size_t>(node)] = 0;
-    }
+    for (const NodeId node : nodes) result[static_cast<std::size_t>(node)] = 0;
   };
   const ElementList list(mesh);
   for (int e = 0; e < list.count(); ++e) {
     if (weights[static_cast<std::size_t>(e)] != 0.0) use(list.nodes(e));
   }
-  if (settings.sample) each_membrane_face(settings, use);
+  if (settings.sample) {
+    each_membrane_face(settings, [&](const std::vector<NodeId>& nodes) {
+      for (const NodeId node : nodes) check_node(node, mesh, "membranes");
+      use(nodes);
+    });
+  }
   for (const NodeId node : settings.fixed_nodes) {
     check_node(node, mesh, "fixed");
     result[static_cast<std::size_t>(node)] = -1;

@@ -97,7 +97,6 @@ class SparseStep : public StepSystem, protected SiteLevers {
   const VectorX& motion() const { return motion_; }
   /// b + H^T effort of the last linearisation, N. Valid until the next call of this object.
   const VectorX& imbalance(std::span<const double> effort);
-  const SparseSystem& system() const { return system_; }
 
  private:
   void solve_for_imbalance();

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "sinew/core/error.hpp"
+#include "sinew/core/rotation.hpp"
 #include "sinew/mechanics/sparse_rows.hpp"
 
 namespace sinew::mechanics {
@@ -18,12 +19,6 @@ Block columns_of(const Matrix3& k) {
     for (int r = 0; r < 3; ++r) block[static_cast<std::size_t>(4 * c + r)] = k(r, c);
   }
   return block;
-}
-
-Matrix3 cross_matrix(const Vector3& l) {
-  Matrix3 m;
-  m << 0.0, -l[2], l[1], l[2], 0.0, -l[0], -l[1], l[0], 0.0;
-  return m;
 }
 
 void add_to(double* to, double weight, const Block& block) {

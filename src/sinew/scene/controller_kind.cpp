@@ -2,9 +2,6 @@
 
 #include <utility>
 
-#include <fmt/format.h>
-
-#include "sinew/core/error.hpp"
 #include "sinew/scene/grammar_forms.hpp"
 #include "sinew/scene/kind_list.hpp"
 
@@ -22,9 +19,7 @@ KindList<ControllerKind>& kinds_of_controllers() {
 void register_controller_kind(const ControllerKind& kind) { kinds_of_controllers().add(kind); }
 
 const ControllerKind& controller_kind(std::string_view word) {
-  if (const ControllerKind* found = kinds_of_controllers().find(word)) return *found;
-  throw Error(ErrorKind::internal, {},
-              fmt::format("no kind of controller has the word '{}'", word));
+  return kinds_of_controllers().get(word);
 }
 
 Form forms::controller_form() {

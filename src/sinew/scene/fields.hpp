@@ -27,6 +27,8 @@ class Fields {
 
   const Node& map() const { return map_; }
   const KeyTable& table() const { return table_; }
+  /// Whether the table has a key, written or not: kinds differ in their keys.
+  bool may_have(std::string_view key) const { return table_.find(key) != nullptr; }
 
   /// The value of a key, or nullptr if it is omitted.
   const Node* find(std::string_view key) const;

@@ -40,7 +40,7 @@ LoadDescription read_load(const Node::Entry& entry, const ReadContext& context) 
   const Fields fields(entry.value, form);
   load.kind = &load_kind(read_text(*entry.value.find(form.telltale)));
   fields.read("body", load.body);
-  if (fields.table().find("outside") != nullptr) read_outside(fields, load.outside);
+  if (fields.may_have("outside")) read_outside(fields, load.outside);
   load.kind->read(fields, context, load);
   const char* signal = load.kind->signal;
   if (fields.find(signal) != nullptr) load.factor = read_signal(fields, signal, context);

@@ -12,7 +12,7 @@ namespace {
 void read_stops(const Fields& fields, builder::JointSettings& joint) {
   const Fields limits = fields.below("limits");
   const auto read = [&](const char* motion, model::Limits& limit) {
-    if (limits.table().find(motion) == nullptr) return;
+    if (!limits.may_have(motion)) return;
     const Fields stops = limits.below(motion);
     stops.read("min", limit.min);
     stops.read("max", limit.max);
@@ -27,8 +27,8 @@ builder::JointSettings read_rigid_joint(constraint::JointType type, const Fields
   builder::JointSettings joint;
   joint.type = type;
   fields.read("point", joint.point);
-  if (fields.table().find("limits") != nullptr) read_stops(fields, joint);
-  if (fields.table().find("friction") != nullptr) fields.read("friction", joint.friction);
+  if (fields.may_have("limits")) read_stops(fields, joint);
+  if (fields.may_have("friction")) fields.read("friction", joint.friction);
   return joint;
 }
 

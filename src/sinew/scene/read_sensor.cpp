@@ -10,10 +10,8 @@ namespace sinew::scene {
 
 namespace {
 
-// Types differ in their keys.
-bool may_have(const Fields& fields, const char* key) { return fields.table().find(key) != nullptr; }
 bool has(const Fields& fields, const char* key) {
-  return may_have(fields, key) && fields.find(key) != nullptr;
+  return fields.may_have(key) && fields.find(key) != nullptr;
 }
 
 void read_channel(const Fields& fields, SensorDescription& sensor) {
@@ -25,7 +23,7 @@ void read_channel(const Fields& fields, SensorDescription& sensor) {
   fields.read("timeout", channel.timeout);
   int seed = 0;
   if (fields.read("seed", seed)) channel.seed = static_cast<std::uint64_t>(seed);
-  if (!may_have(fields, "noise")) return;
+  if (!fields.may_have("noise")) return;
   fields.read("noise", channel.noise);
   fields.read("bias", channel.bias);
   fields.read("drift", channel.drift);
@@ -68,9 +66,9 @@ SensorDescription read_sensor(const Node::Entry& entry, const ReadContext& conte
   const Form& form = form_of(grammar(), "sensors", Shape::names).items.front();
   const Fields fields(entry.value, form);
   sensor.kind = &sensor_kind(read_text(*entry.value.find(form.telltale)));
-  if (may_have(fields, "body")) fields.read("body", sensor.body);
-  if (may_have(fields, "actuator")) fields.read("actuator", sensor.actuator);
-  if (may_have(fields, "outside")) read_outside(fields, sensor.outside);
+  if (fields.may_have("body")) fields.read("body", sensor.body);
+  if (fields.may_have("actuator")) fields.read("actuator", sensor.actuator);
+  if (fields.may_have("outside")) read_outside(fields, sensor.outside);
   if (sensor.kind->read != nullptr) sensor.kind->read(fields, context, sensor);
   read_channel(fields, sensor);
   if (fields.find("file") == nullptr) return sensor;
